@@ -1,0 +1,1 @@
+"""What observes a session and never changes it: window, video, table."""
