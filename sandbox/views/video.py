@@ -1,0 +1,244 @@
+"""Frames to a film (.mp4), an animation (.gif) or a picture of the last frame (.png).
+
+Whatever happens, the file that stood at the path before stays until the new one is whole: frames
+go to a temporary name in the same folder, which is renamed at the end. Ctrl-C also ends in a whole
+file.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.files import atomic_write
+from sandbox.interrupts import deferred
+
+SUFFIXES = (".mp4", ".gif", ".png")
+
+Image = NDArray[np.uint8]
+
+# Players take untagged HD film for BT.709 while ffmpeg converts by BT.601: say and do the same.
+_BT709 = ["-vf", "scale=out_color_matrix=bt709:out_range=tv"]
+_BT709 += ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
+_MP4 = {
+    "codec": "libx264",
+    "pixelformat": "yuv420p",  # what every browser, phone and projector laptop can show
+    "macro_block_size": 2,  # yuv420p halves the colour planes, which is why sizes are even
+    "quality": None,
+    "ffmpeg_params": ["-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", *_BT709],
+}
+# A GIF needs the palette of the whole film before its first frame can be written, so frames wait in
+# a lossless file: memory stays flat however long the film is.
+_LOSSLESS = {
+    "codec": "libx264rgb",
+    "pixelformat": "rgb24",
+    "macro_block_size": 1,
+    "quality": None,
+    "ffmpeg_params": ["-preset", "ultrafast", "-qp", "0"],
+}
+_PROBE_BYTES = 1 << 22
+
+
+class VideoWriter:
+    """Writes frames (h, w, 3) of ``size`` (w, h) [px] to ``path`` at ``fps`` frames a second.
+
+    A context manager: leaving it normally, or by Ctrl-C, publishes the file; leaving it by any
+    other exception removes what was written so far. With no frame written nothing is published.
+    Raises InputError, in one line, for what a person can mend: the suffix, the size, a full disk.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], fps: float) -> None:
+        # Absolute, since ffmpeg would take "a:b.mp4" for a protocol and "-a.mp4" for an option.
+        self.path = Path(path).resolve()
+        self.suffix = self.path.suffix.lower()
+        if self.suffix not in SUFFIXES:
+            raise InputError(f"{path}: cannot write this kind of file; use {', '.join(SUFFIXES)}")
+        if self.suffix == ".mp4" and (size[0] % 2 or size[1] % 2):
+            raise InputError(f"a film needs even width and height, not {size[0]}x{size[1]}")
+        self.size = size
+        self.fps = fps
+        self.frames = 0
+        stem = f".{self.path.stem}.{os.getpid()}"
+        self._temporary = self.path.with_name(f"{stem}.part{self.suffix}")
+        self._lossless = self.path.with_name(f"{stem}.part.mkv")
+        self._palette = self.path.with_name(f"{stem}.palette.part.png")
+        self._encoder: Any = None
+        self._last: Image | None = None
+        if self.suffix != ".png":
+            _ffmpeg_program()
+
+    def write(self, image: Image) -> None:
+        """Append one frame, uint8 (h, w, 3)."""
+        width, height = self.size
+        if image.shape != (height, width, 3) or image.dtype != np.uint8:
+            raise ValueError(
+                f"a frame must be uint8 ({height}, {width}, 3), not {image.dtype} {image.shape}"
+            )
+        with deferred():
+            if self.suffix == ".png":
+                self._last = image.copy()
+            else:
+                try:
+                    if self._encoder is None:
+                        self._encoder = self._open_encoder()
+                    self._encoder.append_data(image)
+                except OSError as error:
+                    raise self._failed(error) from error
+            self.frames += 1
+
+    def close(self) -> None:
+        """Finish the file and give it its name."""
+        with deferred():
+            try:
+                if self.frames:
+                    self._finish()
+            except OSError as error:
+                raise self._failed(error) from error
+            finally:
+                self._remove_temporaries()
+
+    def discard(self) -> None:
+        """Forget everything that was written; the earlier file stays."""
+        with deferred():
+            self._close_encoder()
+            self._remove_temporaries()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if kind is None or issubclass(kind, KeyboardInterrupt):
+            self.close()
+        else:
+            self.discard()
+
+    def _open_encoder(self) -> Any:
+        import imageio.v2
+
+        target, options = (
+            (self._temporary, _MP4) if self.suffix == ".mp4" else (self._lossless, _LOSSLESS)
+        )
+        # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead.
+        return imageio.v2.get_writer(
+            target, format="FFMPEG", mode="I", fps=self.fps, ffmpeg_log_level="quiet", **options
+        )
+
+    def _close_encoder(self) -> None:
+        encoder, self._encoder = self._encoder, None
+        if encoder is not None:
+            encoder.close()
+
+    def _finish(self) -> None:
+        self._close_encoder()
+        if self.suffix == ".png":
+            assert self._last is not None
+            write_picture(self.path, self._last)
+            return
+        if self.suffix == ".gif":
+            self._make_gif()
+        # The encoder does not say that its last bytes found no room, so the frames are counted.
+        found = _count_frames(self._temporary)
+        if found != self.frames:
+            raise OSError(f"{found} of {self.frames} frames arrived in the file")
+        self._temporary.replace(self.path)
+
+    def _make_gif(self) -> None:
+        """One palette made from all frames: no flicker, and small differences between frames."""
+        _ffmpeg("-i", self._lossless, "-vf", "palettegen", "-update", "1", self._palette)
+        _ffmpeg(
+            *("-i", self._lossless, "-i", self._palette),
+            *("-lavfi", "paletteuse=dither=none:diff_mode=rectangle"),
+            *("-loop", "0", self._temporary),
+        )
+
+    def _failed(self, error: OSError) -> InputError:
+        """Explain in one line why the file could not be written, then tidy up.
+
+        The folder is tried while the part file still takes its room: a full disk then shows itself.
+        """
+        reason = _why_not_writable(self.path.parent) or f"the encoder stopped ({_one_line(error)})"
+        self.discard()
+        kept = "; the earlier file was kept" if self.path.exists() else ""
+        return InputError(f"cannot write {self.path}: {reason}{kept}")
+
+    def _remove_temporaries(self) -> None:
+        for path in (self._temporary, self._lossless, self._palette):
+            path.unlink(missing_ok=True)
+
+
+def write_picture(path: Path, image: Image) -> None:
+    """Write one image, uint8 (h, w, 3), as PNG."""
+    import imageio.v2
+
+    content = imageio.v2.imwrite("<bytes>", image, format="png")
+    with atomic_write(path) as file:
+        file.write(content)
+
+
+def _why_not_writable(folder: Path) -> str | None:
+    """What the system says when some bytes are written to the folder, or None if all goes well."""
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(_PROBE_BYTES))
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        return f"{(error.strerror or str(error)).lower()} in {folder}"
+    return None
+
+
+def _ffmpeg_program() -> str:
+    import imageio_ffmpeg
+
+    try:
+        return str(imageio_ffmpeg.get_ffmpeg_exe())
+    except RuntimeError as error:
+        raise InputError(
+            "no ffmpeg was found: reinstall it with pip install --force-reinstall imageio-ffmpeg"
+        ) from error
+
+
+def _ffmpeg(*arguments: str | Path) -> str:
+    """Run ffmpeg, out of reach of the terminal's Ctrl-C, and return its messages.
+
+    Raises OSError with these messages if it fails.
+    """
+    done = subprocess.run(
+        [_ffmpeg_program(), "-nostdin", "-y", "-v", "error", "-stats", *map(str, arguments)],
+        check=False,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        start_new_session=True,
+    )
+    if done.returncode:
+        raise OSError(done.stdout.strip() or f"ffmpeg ended with code {done.returncode}")
+    return done.stdout
+
+
+def _count_frames(path: Path) -> int:
+    """How many frames a file holds; reads them without decoding."""
+    counts = re.findall(
+        r"frame=\s*(\d+)", _ffmpeg("-i", path, "-map", "0:v:0", "-c", "copy", "-f", "null", "-")
+    )
+    return int(counts[-1]) if counts else 0
+
+
+def _one_line(error: OSError) -> str:
+    lines = str(error).strip().splitlines()
+    return lines[0] if lines else type(error).__name__
