@@ -27,14 +27,14 @@ SUFFIXES = (".mp4", ".gif", ".png")
 Image = NDArray[np.uint8]
 
 # Players take untagged HD film for BT.709 while ffmpeg converts by BT.601: say and do the same.
-_BT709 = ["-vf", "scale=out_color_matrix=bt709:out_range=tv"]
-_BT709 += ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
+_BT709 = "setparams=colorspace=bt709:color_primaries=bt709:color_trc=bt709:range=tv"
+_TO_BT709 = ["-vf", f"scale=out_color_matrix=bt709:out_range=tv,{_BT709}"]
 _MP4 = {
     "codec": "libx264",
     "pixelformat": "yuv420p",  # what every browser, phone and projector laptop can show
     "macro_block_size": 2,  # yuv420p halves the colour planes, which is why sizes are even
     "quality": None,
-    "ffmpeg_params": ["-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", *_BT709],
+    "ffmpeg_params": ["-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", *_TO_BT709],
 }
 # A GIF needs the palette of the whole film before its first frame can be written, so frames wait in
 # a lossless file: memory stays flat however long the film is.
@@ -59,7 +59,7 @@ class VideoWriter:
     def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], fps: float) -> None:
         # Absolute, since ffmpeg would take "a:b.mp4" for a protocol and "-a.mp4" for an option.
         self.path = Path(path).resolve()
-        self.suffix = self.path.suffix.lower()
+        self.suffix = Path(path).suffix.lower()
         if self.suffix not in SUFFIXES:
             raise InputError(f"{path}: cannot write this kind of file; use {', '.join(SUFFIXES)}")
         if self.suffix == ".mp4" and (size[0] % 2 or size[1] % 2):

@@ -1,0 +1,209 @@
+"""From the words on the command line to checked values. Nothing here takes long or writes a file.
+
+Every function raises InputError with one line: what is wrong, and what to do about it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import re
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+from core.errors import InputError
+
+SMALLEST_SIZE = (320, 240)
+LARGEST_SIZE = (7680, 4320)
+HIGHEST_FPS = {".mp4": 120.0, ".gif": 50.0, ".png": 120.0}
+MOST_STEPS = 1_000_000
+LARGEST_SEED = 2**63 - 1
+
+T = TypeVar("T")
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that raises InputError where argparse prints its usage and exits."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        self.options: list[str] = []
+        super().__init__(*args, allow_abbrev=False, **kwargs)
+
+    def add_argument(self, *names: str, **kwargs: Any) -> argparse.Action:  # type: ignore[override]
+        self.options += [name for name in names if name.startswith("--")]
+        return super().add_argument(*names, **kwargs)
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message.removeprefix('argument ')}; see {self.prog} --help")
+
+    def refuse_leftovers(self, words: Sequence[str]) -> None:
+        """Raise InputError if the parser understood not all words."""
+        for word in words:
+            if word.startswith("-"):
+                option = word.split("=", 1)[0]
+                raise InputError(
+                    f"unknown option {option}{did_you_mean(option, self.options)}"
+                    f"; see {self.prog} --help"
+                )
+        if words:
+            raise InputError(f"unexpected argument {words[0]!r}; see {self.prog} --help")
+
+
+def did_you_mean(word: str, choices: Iterable[str]) -> str:
+    """`` (did you mean X?)`` for the choice nearest to ``word``, or nothing."""
+    near = get_close_matches(word.lower(), list(choices), n=1, cutoff=0.5)
+    return f" (did you mean {near[0]}?)" if near else ""
+
+
+def argument(parse: Callable[[str], T]) -> Callable[[str], T]:
+    """Make a function of this module fit for ``type=``, so that argparse names the option."""
+
+    def checked(text: str) -> T:
+        try:
+            return parse(text)
+        except InputError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+
+    return checked
+
+
+def one_of(*choices: str) -> Callable[[str], str]:
+    """A parser for one of a few words."""
+
+    def parse(text: str) -> str:
+        if text not in choices:
+            raise InputError(
+                f"unknown value {text!r}{did_you_mean(text, choices)}: use {' or '.join(choices)}"
+            )
+        return text
+
+    return parse
+
+
+def size(text: str) -> tuple[int, int]:
+    """``WIDTHxHEIGHT`` [px], both even as video needs them."""
+    match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", text.strip().lower())
+    if match is None:
+        raise InputError(f"{text!r} is not a size: write WIDTHxHEIGHT, such as 1280x720")
+    width, height = int(match[1]), int(match[2])
+    if width % 2 or height % 2:
+        even = f"{width + width % 2}x{height + height % 2}"
+        raise InputError(f"video needs even numbers, not {text}: use {even}")
+    fits = all(
+        low <= n <= high
+        for low, n, high in zip(SMALLEST_SIZE, (width, height), LARGEST_SIZE, strict=True)
+    )
+    if not fits:
+        low, high = ("{}x{}".format(*limit) for limit in (SMALLEST_SIZE, LARGEST_SIZE))
+        raise InputError(f"{text} is out of range: use a size from {low} to {high}")
+    return width, height
+
+
+def whole_number(low: int, high: int) -> Callable[[str], int]:
+    """A parser for an integer in a range."""
+
+    def parse(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            raise InputError(f"{text!r} is not a whole number") from None
+        if not low <= value <= high:
+            raise InputError(f"{value} is out of range: use {low} to {high}")
+        return value
+
+    return parse
+
+
+def number(low: float, high: float) -> Callable[[str], float]:
+    """A parser for a finite number in a range."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            raise InputError(f"{text!r} is not a number") from None
+        if not (math.isfinite(value) and low <= value <= high):
+            raise InputError(f"{text} is out of range: use {low:g} to {high:g}")
+        return value
+
+    return parse
+
+
+def check_fps(fps: float, suffix: str) -> None:
+    """A GIF stores whole hundredths of a second, and browsers slow down anything under two."""
+    highest = HIGHEST_FPS[suffix]
+    if fps > highest:
+        raise InputError(f"--fps {fps:g} is too fast for {suffix}: use {highest:g} at most")
+
+
+def output_file(option: str, text: str, suffixes: Sequence[str]) -> Path:
+    """A path that can be written: right suffix, existing folder, nothing in the way."""
+    path = Path(text)
+    if path.suffix.lower() not in suffixes:
+        raise InputError(f"{option} {text}: the name must end in {' or '.join(suffixes)}")
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        raise InputError(f"{option} {text}: there is no folder {folder}; make it first")
+    if path.is_dir():
+        raise InputError(f"{option} {text}: this is a folder; give a file name")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{option} {text}: this file is write-protected; choose another name")
+    try:
+        # Only an attempt tells about read-only file systems, quotas and access lists.
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise InputError(f"{option} {text}: cannot write in {folder} ({reason})") from error
+    return path
+
+
+def check_different(files: dict[str, Path | None]) -> None:
+    """Raise InputError if two options name the same file, be it through a link."""
+    seen: dict[Path, str] = {}
+    for option, path in files.items():
+        if path is None:
+            continue
+        earlier = seen.setdefault(path.resolve(), option)
+        if earlier != option:
+            raise InputError(f"{earlier} and {option} name the same file {path}: choose two")
+
+
+def assignments(scene: Any, texts: Sequence[str]) -> dict[str, object]:
+    """``NAME=VALUE`` words to the complete, checked settings of ``scene``."""
+    parameters = {parameter.name: parameter for parameter in scene.parameters}
+    overrides: dict[str, object] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise InputError(f"--set {text}: write NAME=VALUE, such as --set {_example(scene)}")
+        if name not in parameters:
+            raise InputError(
+                f"--set {text}: {scene.name} has no parameter {name!r}"
+                f"{did_you_mean(name, parameters)}: it has {', '.join(parameters)}"
+            )
+        if name in overrides:
+            raise InputError(f"--set {text}: {name} is set twice")
+        try:
+            overrides[name] = parameters[name].parse(value)
+        except InputError as error:
+            raise InputError(f"--set {text}: {error}") from error
+    return dict(scene.settings(overrides))
+
+
+def packing(scene: Any, name: str) -> str:
+    """The name of one of the packings of ``scene``."""
+    if name not in scene.packings:
+        raise InputError(
+            f"--packing {name}: {scene.name} has no such packing"
+            f"{did_you_mean(name, scene.packings)}: it has {', '.join(scene.packings)}"
+        )
+    return name
+
+
+def _example(scene: Any) -> str:
+    return next((f"{p.name}={p.default}" for p in scene.parameters), "radius=5.7")

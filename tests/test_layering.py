@@ -1,0 +1,88 @@
+"""Who may import whom: sandbox -> scenes -> core, and the physics knows no window."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).parents[1]
+LAYERS = ("core", "scenes", "sandbox")
+# What a layer may import of the layers.
+ALLOWED = {"core": {"core"}, "scenes": {"core", "scenes"}, "sandbox": set(LAYERS)}
+OUT_OF_CORE = {"pygame", "imageio", "imageio_ffmpeg", "matplotlib", "tqdm", "PIL"}
+MODULES = [path for layer in LAYERS for path in sorted((REPOSITORY / layer).rglob("*.py"))]
+
+
+def imports(path: Path) -> Iterator[tuple[int, str]]:
+    """Every imported module in a file, wherever the import stands: (line, dotted name)."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from ((node.lineno, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}:{node.lineno}: relative import"
+            yield node.lineno, node.module or ""
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(REPOSITORY)))
+def test_imports_run_one_way(path: Path) -> None:
+    layer = path.relative_to(REPOSITORY).parts[0]
+    for line, name in imports(path):
+        package = name.partition(".")[0]
+        where = f"{path}:{line} imports {name}"
+        assert package not in set(LAYERS) - ALLOWED[layer], where
+        assert package != "tests", where
+        if layer != "sandbox":
+            assert package not in OUT_OF_CORE, where
+        if package == "pymunk":
+            assert path == REPOSITORY / "core" / "rigid.py", where
+
+
+def test_all_packages_were_looked_at() -> None:
+    assert {path.relative_to(REPOSITORY).parts[0] for path in MODULES} == set(LAYERS)
+
+
+def loaded_after(code: str) -> set[str]:
+    """Top-level packages that a fresh Python holds after ``code``."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"import json, sys\n{code}\nprint(json.dumps(list(sys.modules)))"],
+        cwd=REPOSITORY,
+        env={**os.environ, "PYTHONPATH": str(REPOSITORY)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    return {name.partition(".")[0] for name in json.loads(done.stdout.splitlines()[-1])}
+
+
+@pytest.mark.parametrize("layer", ["core", "scenes"])
+def test_physics_loads_no_window_and_no_video(layer: str) -> None:
+    modules = [
+        ".".join(path.relative_to(REPOSITORY).with_suffix("").parts).removesuffix(".__init__")
+        for path in MODULES
+        if path.relative_to(REPOSITORY).parts[0] == layer
+    ]
+    loaded = loaded_after("\n".join(f"import {module}" for module in modules))
+    assert not loaded & OUT_OF_CORE
+    assert "sandbox" not in loaded
+
+
+def test_command_line_starts_light() -> None:
+    heavy = {
+        "numba",
+        "numpy",
+        "pygame",
+        "pymunk",
+        "imageio",
+        "imageio_ffmpeg",
+        "matplotlib",
+        "tqdm",
+    }
+    assert not loaded_after("import sandbox.cli") & heavy
