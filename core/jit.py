@@ -66,7 +66,7 @@ def kernel(function: Callable[..., Any] | None = None, *, noalias: bool = False,
     """
 
     def decorate(f: Callable[..., Any]) -> Any:
-        flags: dict[str, Any] = dict(nogil=True, cache=True, error_model="numpy", fastmath=FAST_MATH)
+        flags: dict[str, Any] = dict(nogil=True, cache=True, error_model="numpy", fastmath=FAST_MATH, forceinline=True)
         if noalias and NOALIAS_PIPELINE is not None:
             flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)

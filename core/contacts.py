@@ -1,0 +1,132 @@
+"""Contacts between grains: overlap, energy and generalised forces, in a form that the compiler can vectorise.
+
+Two grains i and j, d = x_j − x_i, r = |d|, n = d/r at angle φ, overlap Δ = h_i(n) + h_j(n) − r, energy C_ij Δ²/2 where Δ > 0.
+h is the support function, h² = s + u cos 2φ + v sin 2φ with s = p² + |q|², u = 2 p q1, v = 2 p q2 computed once a grain, and
+cos 2φ = (dx² − dy²)/r², sin 2φ = 2 dx dy/r²: no trigonometric call anywhere. Equations: MODEL.md, "Contacts".
+
+Layout ("jagged diagonals"): a FULL neighbour list, slot-major. Slot t holds the t-th neighbour of grains 0 … count[t]−1, so the
+inner loop runs over grains, its loads and stores of grain i are contiguous, and only grain j is gathered. Every pair is computed
+twice, once from each side: that costs arithmetic, which is cheap, and saves the scatter, which is not. It also makes the sum
+over a grain's contacts independent of every other grain, hence of the number of threads.
+
+While contacts are summed, rows 2–4 of ``force`` hold A = Σ f/h, B = Σ f cos 2φ/h, D = Σ f sin 2φ/h; ``elasticity.finish`` turns
+them into the forces on (p, q1, q2).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from core.jit import kernel
+
+COINCIDENT = 1e-290  # [R²] keeps 1/r finite for coincident centres; far below rounding for all others
+
+
+@kernel(noalias=True)
+def prepare(p, q1, q2, s, u, v, fx, fy, a, b, d):
+    """Support coefficients s, u, v of every grain; forces set to zero."""
+    for i in range(p.shape[0]):
+        pi = p[i]
+        q1i = q1[i]
+        q2i = q2[i]
+        s[i] = pi * pi + q1i * q1i + q2i * q2i
+        u[i] = 2.0 * pi * q1i
+        v[i] = 2.0 * pi * q2i
+        fx[i] = 0.0
+        fy[i] = 0.0
+        a[i] = 0.0
+        b[i] = 0.0
+        d[i] = 0.0
+
+
+@kernel(noalias=True)
+def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
+    """Add the contacts of one slot; return their energy. ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,).
+
+    Where two centres coincide the direction is undefined: the pair then has an energy but no force, and nothing becomes nan.
+    """
+    energy = 0.0
+    for i in range(neighbor.shape[0]):
+        j = neighbor[i]
+        dx = x[j] - x[i]
+        dy = y[j] - y[i]
+        if box is not None:
+            rows = np.rint(dy * box[3])
+            dx -= rows * box[4]
+            dy -= rows * box[2]
+            dx -= box[0] * np.rint(dx * box[1])
+        ui = u[i]
+        vi = v[i]
+        uj = u[j]
+        vj = v[j]
+        r2 = dx * dx + dy * dy + COINCIDENT
+        inverse = 1.0 / math.sqrt(r2)
+        inverse2 = inverse * inverse
+        c2 = (dx * dx - dy * dy) * inverse2
+        s2 = 2.0 * dx * dy * inverse2
+        hi2 = s[i] + ui * c2 + vi * s2
+        hj2 = s[j] + uj * c2 + vj * s2
+        inverse_hi = 1.0 / math.sqrt(hi2)
+        inverse_hj = 1.0 / math.sqrt(hj2)
+        overlap = hi2 * inverse_hi + hj2 * inverse_hj - r2 * inverse
+        # A plain select, true also for nan, so that nan goes on meaning nan.
+        overlap = 0.0 if overlap <= 0.0 else overlap
+        f = stiffness[i] * overlap
+        energy += 0.25 * f * overlap  # each pair is met twice
+        fi = f * inverse_hi
+        fj = f * inverse_hj
+        turn = (fi * (vi * c2 - ui * s2) + fj * (vj * c2 - uj * s2)) * inverse2
+        f *= inverse
+        fx[i] -= f * dx + turn * dy
+        fy[i] += turn * dx - f * dy
+        a[i] += fi
+        b[i] += fi * c2
+        d[i] += fi * s2
+    return energy
+
+
+@kernel
+def add_contact_forces(state, support, force, count, offset, neighbor, stiffness, box):
+    """Add all grain–grain contacts to ``force``; return their energy [k R²]."""
+    energy = 0.0
+    for t in range(count.shape[0]):
+        n = count[t]
+        if n == 0:
+            break
+        first = offset[t]
+        energy += slot_forces(
+            neighbor[first : first + n],
+            stiffness[first : first + n],
+            state[0],
+            state[1],
+            support[0],
+            support[1],
+            support[2],
+            force[0],
+            force[1],
+            force[2],
+            force[3],
+            force[4],
+            box,
+        )
+    return energy
+
+
+@kernel
+def grain_overlap(state, support, i, j, box):
+    """One pair by itself: (overlap, dx, dy, c2, s2, h_i, h_j), d from i to j. For observables and tests, not for the inner loop."""
+    dx = state[0, j] - state[0, i]
+    dy = state[1, j] - state[1, i]
+    if box is not None:
+        rows = np.rint(dy * box[3])
+        dx -= rows * box[4]
+        dy -= rows * box[2]
+        dx -= box[0] * np.rint(dx * box[1])
+    r2 = dx * dx + dy * dy + COINCIDENT
+    c2 = (dx * dx - dy * dy) / r2
+    s2 = 2.0 * dx * dy / r2
+    hi = math.sqrt(support[0, i] + support[1, i] * c2 + support[2, i] * s2)
+    hj = math.sqrt(support[0, j] + support[1, j] * c2 + support[2, j] * s2)
+    return hi + hj - math.sqrt(r2), dx, dy, c2, s2, hi, hj

@@ -1,0 +1,295 @@
+"""FIRE: the inertial minimiser that relaxes a packing to mechanical equilibrium.
+
+Bitzek et al., doi:10.1103/PhysRevLett.97.170201, with the half step back and the bounds of FIRE 2.0, Guénolé et al.,
+doi:10.1016/j.commatsci.2020.109584, and velocity-Verlet ordering. The grains are given inertia and pushed downhill; velocity is
+turned towards the force, and thrown away as soon as it points uphill.
+
+Inertia is a preconditioner here, not physics: dt is fixed by the contact stiffness, dt_max = DT_FACTOR √(1/C), and a degree of
+freedom that is stiffer than a contact is made heavier in proportion (``inverse_mass``). So nothing is tuned by hand per scene.
+
+Everything that a relaxation needs from one call to the next stands in ``Minimizer``: cut into any number of calls, it takes the
+same steps to the last bit.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.contacts import add_contact_forces, grain_overlap, prepare
+from core.elasticity import finish
+from core.jit import kernel
+from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
+from core.rigid_contacts import RigidTerms, add_rigid_forces, find_rigid_pairs, touch
+
+CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
+
+DT_FACTOR = 0.6  # of √(m / C k); velocity Verlet is stable to about 0.7
+DT_START, DT_SHRINK_FLOOR = 0.25, 1e-3  # first and least dt, as a fraction of dt_max
+ALPHA_START, ALPHA_DECAY = 0.1, 0.99
+DT_GROW, DT_SHRINK, DELAY = 1.1, 0.5, 5
+SHAPE_MASS = 4.0  # inertia of p, q1, q2 relative to x, y
+HALF_STEP_BACK = True
+SCALE_EVERY = 50  # iterations between looks at the mean contact force
+
+# Slots of Minimizer.control.
+DT, ALPHA, DOWNHILL, KEEP, PUSH, MOVED, SCALE, COUNTDOWN, ENERGY, RESIDUAL, LISTED, PENDING, FASTEST, START_ENERGY = range(14)
+
+
+class Grains(NamedTuple):
+    """Material of each grain as the kernels want it, (N,)."""
+
+    contact_stiffness: NDArray[np.float64]  # C [k]
+    rest_area: NDArray[np.float64]  # A0 = R0² [R²]
+    area_stiffness: NDArray[np.float64]  # κ(1+ν)/A0 [k/R²]
+    shape_stiffness: NDArray[np.float64]  # 2κ(1−ν) [k]
+
+
+class Minimizer(NamedTuple):
+    """Arrays of one relaxation. All per-grain arrays stand in the order that the neighbour lists want."""
+
+    state: NDArray[np.float64]  # (5, N) x, y, p, q1, q2 [R]
+    velocity: NDArray[np.float64]  # (5, N)
+    force: NDArray[np.float64]  # (5, N) [k R]
+    inverse_mass: NDArray[np.float64]  # (5, N)
+    reference: NDArray[np.float64]  # (5, N) state when the lists were built
+    support: NDArray[np.float64]  # (3, N)
+    grains: Grains
+    lists: Lists
+    identity: NDArray[np.int64]  # (N,) place of each grain in the packing
+    scratch: NDArray[np.float64]  # (N,)
+    scratch_identity: NDArray[np.int64]  # (N,)
+    control: NDArray[np.float64]  # (14,)
+
+
+class Limits(NamedTuple):
+    """Numbers that bound a relaxation."""
+
+    tolerance: float  # on max |generalised force| over the mean contact force
+    force_floor: float  # least mean contact force that counts [k R]
+    dt_max: float
+    clamp: float  # largest displacement of any degree of freedom in one iteration [R]
+    skin: float  # [R]
+
+
+@kernel(noalias=True)
+def kick(velocity, force, inverse_mass, keep, push):
+    """v ← keep v + push F/m."""
+    for i in range(velocity.shape[0]):
+        velocity[i] = keep * velocity[i] + push * force[i] * inverse_mass[i]
+
+
+@kernel(noalias=True)
+def drift(state, velocity, dt):
+    """x ← x + dt v."""
+    for i in range(state.shape[0]):
+        state[i] += dt * velocity[i]
+
+
+@kernel
+def largest(bits):
+    """max |value| from the bits of float64 numbers (n,) int64: integers compare as the numbers do, nan above all, and vectorise."""
+    most = np.int64(0)
+    for i in range(bits.shape[0]):
+        magnitude = bits[i] & np.int64(0x7FFFFFFFFFFFFFFF)
+        most = magnitude if magnitude > most else most
+    return most
+
+
+@kernel(noalias=True)
+def second_kick(velocity, force, inverse_mass, half_dt):
+    """v ← v + dt/2 F/m. Returns (F·v, Σ F²/m, Σ m v²)."""
+    power = 0.0
+    force_square = 0.0
+    speed_square = 0.0
+    for i in range(velocity.shape[0]):
+        f = force[i]
+        weighted = f * inverse_mass[i]
+        v = velocity[i] + half_dt * weighted
+        velocity[i] = v
+        power += f * v
+        force_square += f * weighted
+        speed_square += v * v / inverse_mass[i]
+    return power, force_square, speed_square
+
+
+@kernel
+def farthest(state, reference):
+    """Upper bound of what any grain has moved plus grown since the lists were built [R]."""
+    most = 0.0
+    for i in range(state.shape[1]):
+        dx = state[0, i] - reference[0, i]
+        dy = state[1, i] - reference[1, i]
+        dp = state[2, i] - reference[2, i]
+        d1 = state[3, i] - reference[3, i]
+        d2 = state[4, i] - reference[4, i]
+        moved = math.sqrt(dx * dx + dy * dy) + abs(dp) + math.sqrt(d1 * d1 + d2 * d2)
+        if not moved <= most:
+            most = moved
+    return most
+
+
+@kernel
+def collapsed(state):
+    """True if some grain's shorter semi-axis is not greater than 0 (also when it is nan)."""
+    for i in range(state.shape[1]):
+        if not state[2, i] > math.sqrt(state[3, i] ** 2 + state[4, i] ** 2):
+            return True
+    return False
+
+
+@kernel
+def permute(values, order, scratch):
+    """values ← values[order], in place."""
+    for i in range(order.shape[0]):
+        scratch[i] = values[order[i]]
+    for i in range(order.shape[0]):
+        values[i] = scratch[i]
+
+
+@kernel
+def relist(m, box, rigid, skin):
+    """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
+
+    A kernel of its own, called between slices of ``run``: lists are rebuilt hundreds of times less often than forces.
+    """
+    trouble = rebuild(m.state, m.grains.contact_stiffness, skin, m.lists, box)
+    if trouble != FIT:
+        return trouble
+    order = m.lists.order
+    for row in range(5):
+        permute(m.state[row], order, m.scratch)
+        permute(m.velocity[row], order, m.scratch)
+        permute(m.inverse_mass[row], order, m.scratch)
+    permute(m.grains.contact_stiffness, order, m.scratch)
+    permute(m.grains.rest_area, order, m.scratch)
+    permute(m.grains.area_stiffness, order, m.scratch)
+    permute(m.grains.shape_stiffness, order, m.scratch)
+    permute(m.identity, order, m.scratch_identity)
+    if rigid is not None:
+        if not find_rigid_pairs(m.state, rigid, 0.5 * skin):
+            return RIGID_FULL
+    m.reference[:] = m.state
+    m.control[MOVED] = 0.0
+    m.control[LISTED] = 1.0
+    return FIT
+
+
+@kernel
+def evaluate(m, box, rigid):
+    """Forces of every term that the scene has, into ``force``; returns the energy [k R²]."""
+    state = m.state
+    force = m.force
+    prepare(
+        state[2], state[3], state[4], m.support[0], m.support[1], m.support[2], force[0], force[1], force[2], force[3], force[4]
+    )
+    energy = add_contact_forces(state, m.support, force, m.lists.count, m.lists.offset, m.lists.neighbor, m.lists.stiffness, box)
+    if rigid is not None:
+        energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid)
+    grains = m.grains
+    energy += finish(
+        state[2], state[3], state[4], grains.rest_area, grains.area_stiffness, grains.shape_stiffness, force[2], force[3], force[4]
+    )
+    return energy
+
+
+@kernel
+def mean_contact_force(m, box, rigid):
+    """Mean normal force of all contacts that carry one [k R]; 0 where there is none."""
+    total = 0.0
+    contacts = 0.0
+    count = m.lists.count
+    for t in range(count.shape[0]):
+        first = m.lists.offset[t]
+        for i in range(count[t]):
+            j = m.lists.neighbor[first + i]
+            f = m.lists.stiffness[first + i] * grain_overlap(m.state, m.support, i, j, box)[0]
+            if f > 0.0:
+                total += 0.5 * f
+                contacts += 0.5
+    if rigid is not None:
+        for k in range(rigid.used[0]):
+            i = rigid.grain[k]
+            overlap = touch(
+                rigid.primitives[rigid.primitive[k]],
+                m.state[0, i],
+                m.state[1, i],
+                m.support[0, i],
+                m.support[1, i],
+                m.support[2, i],
+            )[0]
+            if overlap > 0.0:
+                total += m.grains.contact_stiffness[i] * overlap
+                contacts += 1.0
+    return total / contacts if contacts > 0.0 else 0.0
+
+
+@kernel
+def run(m, box, rigid, limits, max_iterations):
+    """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE call ``relist``.
+
+    ``box`` and ``rigid`` are None where the scene has no such term, and then no code for them exists.
+    """
+    control = m.control
+    bits = control.view(np.int64)
+    state = m.state.reshape(-1)
+    velocity = m.velocity.reshape(-1)
+    force = m.force.reshape(-1)
+    inverse_mass = m.inverse_mass.reshape(-1)
+    for iteration in range(max_iterations):
+        dt = control[DT]
+        if control[PENDING] == 0.0:
+            kick(velocity, force, inverse_mass, control[KEEP], control[PUSH])
+            bits[FASTEST] = largest(velocity.view(np.int64))
+            fastest = control[FASTEST]
+            step = dt if fastest * dt <= limits.clamp else limits.clamp / fastest
+            drift(state, velocity, step)
+            # 4 × the largest change of any degree of freedom bounds displacement plus growth of one grain.
+            control[MOVED] += 4.0 * step * fastest
+            if not control[MOVED] <= 0.5 * limits.skin:
+                control[MOVED] = farthest(m.state, m.reference)
+                if not control[MOVED] <= 0.5 * limits.skin:
+                    control[LISTED] = 0.0
+        if control[LISTED] == 0.0:
+            control[PENDING] = 1.0  # the step is made; its forces wait for the new lists
+            return LISTS_STALE, iteration
+        control[PENDING] = 0.0
+        control[ENERGY] = evaluate(m, box, rigid)
+        power, force_square, speed_square = second_kick(velocity, force, inverse_mass, 0.5 * dt)
+        bits[FASTEST] = largest(force.view(np.int64))
+        largest_force = control[FASTEST]
+        if not np.isfinite(power + force_square + speed_square + control[ENERGY]):
+            control[RESIDUAL] = np.nan
+            return NOT_FINITE, iteration + 1
+        control[COUNTDOWN] -= 1.0
+        if control[COUNTDOWN] <= 0.0 or largest_force <= limits.tolerance * control[SCALE]:
+            control[COUNTDOWN] = SCALE_EVERY
+            control[SCALE] = max(mean_contact_force(m, box, rigid), limits.force_floor)
+            if collapsed(m.state):
+                control[RESIDUAL] = largest_force / control[SCALE]
+                return COLLAPSED, iteration + 1
+        control[RESIDUAL] = largest_force / control[SCALE]
+        if control[RESIDUAL] <= limits.tolerance:
+            return CONVERGED, iteration + 1
+        if power > 0.0:
+            control[DOWNHILL] += 1.0
+            alpha = control[ALPHA]
+            control[KEEP] = 1.0 - alpha
+            mix = alpha * math.sqrt(speed_square / force_square)
+            if control[DOWNHILL] > DELAY:
+                dt = min(dt * DT_GROW, limits.dt_max)
+                control[ALPHA] = alpha * ALPHA_DECAY
+        else:
+            control[DOWNHILL] = 0.0
+            control[ALPHA] = ALPHA_START
+            if HALF_STEP_BACK:
+                drift(state, velocity, -0.5 * dt)
+            dt = max(dt * DT_SHRINK, DT_SHRINK_FLOOR * limits.dt_max)
+            control[KEEP] = 0.0
+            mix = 0.0
+        control[DT] = dt
+        control[PUSH] = mix + 0.5 * dt
+    return BUDGET, max_iterations

@@ -1,0 +1,263 @@
+"""Neighbour lists with a skin, rebuilt into preallocated arrays.
+
+A rebuild sorts the grains into cells, finds all pairs closer than their extents plus the skin, and lays the full list out in
+slots (see ``contacts``). That layout wants grains in descending order of their number of neighbours, so a rebuild also says
+in which order the grains must stand; ``relax`` keeps its arrays in that order, and ``Packing`` never knows.
+
+A list stays valid until some grain has moved, or grown, by half the skin in all.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.jit import kernel
+
+SLOT_PADDING = 8
+FIT, PAIRS_FULL, SLOTS_FULL, RIGID_FULL = 0, 1, 2, 3  # what a rebuild answers
+
+
+class Lists(NamedTuple):
+    """Preallocated arrays of the neighbour search for N grains and at most P pairs in at most K slots."""
+
+    count: NDArray[np.int64]  # (K,) grains that have more than t neighbours
+    offset: NDArray[np.int64]  # (K,) where slot t begins in ``neighbor``
+    neighbor: NDArray[np.uint32]  # (2 P + padding,)
+    stiffness: NDArray[np.float64]  # (2 P + padding,) C_ij [k]
+    order: NDArray[np.int64]  # (N,) the grain that must stand at each place
+    cell_order: NDArray[np.int64]  # (N,)
+    cell_start: NDArray[np.int64]  # (cells + 1,)
+    cell_of: NDArray[np.int64]  # (N,)
+    degree: NDArray[np.int64]  # (N,) neighbours of each grain
+    place: NDArray[np.int64]  # (N,) inverse of ``order``
+    first: NDArray[np.int64]  # (P,) one grain of each pair
+    second: NDArray[np.int64]  # (P,) the other
+    filled: NDArray[np.int64]  # (N,)
+    start: NDArray[np.int64]  # (K + 2,)
+
+
+def allocate(grains: int, pairs: int, slots: int) -> Lists:
+    """Arrays for ``grains`` grains with at most ``pairs`` pairs in all and ``slots`` neighbours for any one grain."""
+    pairs = max(8, pairs)
+    entries = 2 * pairs + SLOT_PADDING * slots
+    integers = lambda n: np.zeros(n, dtype=np.int64)  # noqa: E731
+    return Lists(
+        count=integers(slots),
+        offset=integers(slots),
+        neighbor=np.zeros(entries, dtype=np.uint32),
+        stiffness=np.zeros(entries),
+        order=integers(grains),
+        cell_order=integers(grains),
+        cell_start=integers(4 * grains + 32),
+        cell_of=integers(grains),
+        degree=integers(grains),
+        place=integers(grains),
+        first=integers(pairs),
+        second=integers(pairs),
+        filled=integers(grains),
+        start=integers(slots + 2),
+    )
+
+
+@kernel
+def wrap(value, length, inverse):
+    """value folded into [0, length); unchanged where the direction is open (inverse = 0)."""
+    if inverse == 0.0:
+        return value
+    folded = value - length * math.floor(value * inverse)
+    return folded if folded < length else 0.0
+
+
+@kernel
+def search_cells(state, skin, lists, box):
+    """Sort grains into cells at least one cut-off wide. Returns (columns, rows, cell width, cell height, x0, y0, widest extent)."""
+    grains = state.shape[1]
+    widest = 0.0
+    for i in range(grains):
+        widest = max(widest, state[2, i] + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2))
+    reach = max(2.0 * widest + skin, 1e-12)
+    x0 = 0.0
+    y0 = 0.0
+    width = 0.0
+    height = 0.0
+    open_x = True
+    open_y = True
+    if box is not None:
+        open_x = box[1] == 0.0
+        open_y = box[3] == 0.0
+        width = box[0]
+        height = box[2]
+    if open_x:
+        x0 = state[0].min()
+        width = state[0].max() - x0
+    if open_y:
+        y0 = state[1].min()
+        height = state[1].max() - y0
+    # Never more cells than a few a grain, however far one grain has been thrown.
+    most = 2.0 * math.sqrt(grains) + 4.0
+    columns = int(min(max(width / reach, 1.0), most))
+    rows = int(min(max(height / reach, 1.0), most))
+    cell_width = width / columns if width > 0.0 else reach
+    cell_height = height / rows if height > 0.0 else reach
+    start = lists.cell_start
+    for c in range(columns * rows + 1):
+        start[c] = 0
+    for i in range(grains):
+        x = state[0, i] - x0
+        y = state[1, i] - y0
+        if box is not None:
+            if not open_y:
+                turns = math.floor(y * box[3])
+                y -= turns * box[2]
+                x -= turns * box[4]
+            x = wrap(x, box[0], box[1])
+        column = min(max(int(x / cell_width), 0), columns - 1)
+        row = min(max(int(y / cell_height), 0), rows - 1)
+        lists.cell_of[i] = row * columns + column
+        start[lists.cell_of[i] + 1] += 1
+    for c in range(columns * rows):
+        start[c + 1] += start[c]
+    for i in range(grains):
+        c = lists.cell_of[i]
+        lists.cell_order[start[c]] = i
+        start[c] += 1
+    for c in range(columns * rows, 0, -1):
+        start[c] = start[c - 1]
+    start[0] = 0
+    return columns, rows, cell_width, cell_height, x0, y0, widest
+
+
+@kernel
+def near(state, i, j, skin, box):
+    """True where grains i and j may touch before the list is next rebuilt."""
+    dx = state[0, j] - state[0, i]
+    dy = state[1, j] - state[1, i]
+    if box is not None:
+        turns = np.rint(dy * box[3])
+        dx -= turns * box[4]
+        dy -= turns * box[2]
+        dx -= box[0] * np.rint(dx * box[1])
+    reach = state[2, i] + state[2, j] + skin
+    reach += math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + math.sqrt(state[3, j] ** 2 + state[4, j] ** 2)
+    return dx * dx + dy * dy < reach * reach
+
+
+@kernel
+def find_pairs(state, skin, lists, box):
+    """List every near pair once in ``first``, ``second``. Returns their number, or -1 if the arrays are too short."""
+    grains = state.shape[1]
+    columns, rows, cell_width, cell_height, x0, y0, widest = search_cells(state, skin, lists, box)
+    wrap_x = False
+    wrap_y = False
+    sheared = False
+    if box is not None:
+        wrap_x = box[1] > 0.0
+        wrap_y = box[3] > 0.0
+        sheared = box[4] != 0.0
+    capacity = lists.first.shape[0]
+    pairs = 0
+    for row in range(rows):
+        for column in range(columns):
+            here = row * columns + column
+            for step in range(-1, 2):
+                other_row = row + step
+                crossed = 0
+                if other_row < 0 or other_row >= rows:
+                    if not wrap_y:
+                        continue
+                    crossed = 1 if other_row >= rows else -1
+                    other_row -= crossed * rows
+                if wrap_y and rows < 3 and step != 0 and not (rows == 2 and step == 1):
+                    continue  # with one or two rows, another step meets the same rows again
+                left = column - 1
+                right = column + 1
+                if sheared and (crossed != 0 or rows < 3):
+                    # The image above is shifted sideways by any amount: look along the whole row.
+                    left = 0
+                    right = columns - 1
+                if wrap_x and right - left + 1 >= columns:
+                    left = 0
+                    right = columns - 1
+                for raw in range(left, right + 1):
+                    c = raw
+                    if c < 0 or c >= columns:
+                        if not wrap_x:
+                            continue
+                        c += columns if c < 0 else -columns
+                    there = other_row * columns + c
+                    if there < here:
+                        continue
+                    for a in range(lists.cell_start[here], lists.cell_start[here + 1]):
+                        i = lists.cell_order[a]
+                        begin = lists.cell_start[there]
+                        if there == here:
+                            begin = a + 1
+                        for b in range(begin, lists.cell_start[there + 1]):
+                            j = lists.cell_order[b]
+                            if near(state, i, j, skin, box):
+                                if pairs == capacity:
+                                    return -1
+                                lists.first[pairs] = i
+                                lists.second[pairs] = j
+                                pairs += 1
+    return pairs
+
+
+@kernel
+def rebuild(state, contact_stiffness, skin, lists, box):
+    """Find all pairs and lay them out in slots for grains standing in ``lists.order``. Returns FIT, PAIRS_FULL or SLOTS_FULL."""
+    grains = state.shape[1]
+    pairs = find_pairs(state, skin, lists, box)
+    if pairs < 0:
+        return PAIRS_FULL
+    slots = lists.count.shape[0]
+    degree = lists.degree
+    for i in range(grains):
+        degree[i] = 0
+    for k in range(pairs):
+        degree[lists.first[k]] += 1
+        degree[lists.second[k]] += 1
+    start = lists.start
+    for t in range(slots + 2):
+        start[t] = 0
+    for i in range(grains):
+        if degree[i] > slots:
+            return SLOTS_FULL
+        start[slots - degree[i] + 1] += 1
+    # Counting sort, most neighbours first, stable in the order of the cells so that neighbours stay close in memory.
+    for t in range(slots + 1):
+        start[t + 1] += start[t]
+    offset = 0
+    for t in range(slots):
+        # Grains with more than t neighbours stand before all others.
+        lists.count[t] = start[slots - t]
+        lists.offset[t] = offset
+        offset += (lists.count[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
+    if offset > lists.neighbor.shape[0]:
+        return PAIRS_FULL
+    for a in range(grains):
+        i = lists.cell_order[a]
+        t = slots - degree[i]
+        lists.place[i] = start[t]
+        lists.order[start[t]] = i
+        start[t] += 1
+        lists.filled[i] = 0
+    for k in range(pairs):
+        i = lists.first[k]
+        j = lists.second[k]
+        ci = contact_stiffness[i]
+        cj = contact_stiffness[j]
+        stiffness = 2.0 * ci * cj / (ci + cj)
+        at = lists.offset[lists.filled[i]] + lists.place[i]
+        lists.neighbor[at] = lists.place[j]
+        lists.stiffness[at] = stiffness
+        lists.filled[i] += 1
+        at = lists.offset[lists.filled[j]] + lists.place[j]
+        lists.neighbor[at] = lists.place[i]
+        lists.stiffness[at] = stiffness
+        lists.filled[j] += 1
+    return FIT

@@ -1,0 +1,183 @@
+"""From a packing to a relaxation and back: allocates what the minimiser needs, runs it in slices, names why it stopped."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import fire, neighbors, rigid_contacts
+from core.errors import InputError
+from core.material import area_modulus, deformation_stiffness, shape_modulus
+from core.packing import Packing
+
+DEFAULT_TOLERANCE = 1e-2
+DEFAULT_FORCE_FLOOR = 1e-3
+DEFAULT_SKIN = 0.3
+
+
+class StopReason(StrEnum):
+    """Why a relaxation ended."""
+
+    CONVERGED = "converged"
+    BUDGET = "budget"  # of this call; the next call goes on
+    ITERATION_LIMIT = "iteration limit"
+    NOT_FINITE = "not finite"
+    COLLAPSED = "collapsed"
+
+
+_REASONS = {
+    fire.CONVERGED: StopReason.CONVERGED,
+    fire.BUDGET: StopReason.BUDGET,
+    fire.NOT_FINITE: StopReason.NOT_FINITE,
+    fire.COLLAPSED: StopReason.COLLAPSED,
+}
+
+
+@dataclass(frozen=True)
+class Report:
+    """How a relaxation stands: energy [k R²], residual (max |force| over the mean contact force), force evaluations so far."""
+
+    reason: StopReason
+    energy: float
+    start_energy: float
+    residual: float
+    mean_contact_force: float
+    iterations: int
+
+
+class Relaxation:
+    """One relaxation of ``packing`` with rigid bodies at rest. Call ``run`` until it no longer answers BUDGET.
+
+    ``packing`` changes only when ``write_back`` is called. ``primitives`` is (M, 8), see ``rigid_contacts``, or None.
+    """
+
+    def __init__(
+        self,
+        packing: Packing,
+        primitives: NDArray[np.float64] | None = None,
+        *,
+        tolerance: float = DEFAULT_TOLERANCE,
+        force_floor: float = DEFAULT_FORCE_FLOOR,
+        skin: float = DEFAULT_SKIN,
+        max_iterations: int = 20_000,
+    ) -> None:
+        """Raises InputError if the tolerance is not positive or the periodic box is too small for its grains."""
+        if not tolerance > 0.0 or not force_floor > 0.0:
+            raise InputError("the tolerance and the force floor must be greater than 0")
+        self.packing = packing
+        self.max_iterations = max_iterations
+        self.iterations = 0
+        count = len(packing)
+        self._box = None if packing.box is None else packing.box.kernel_form()
+        if packing.box is not None and count:
+            reach = 2.0 * float(packing.semi_axes[0].max()) + skin
+            if min(packing.box.width, packing.box.height) < 2.0 * reach:
+                raise InputError(f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains")
+        self._rigid = None
+        if primitives is not None and len(primitives):
+            self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
+        self._minimizer = _minimizer(packing)
+        stiffest = float(packing.contact_stiffness.max()) if count else 1.0
+        smallest = float(packing.rest_radius.min()) if count else 1.0
+        largest = float(packing.rest_radius.max()) if count else 1.0
+        self._limits = fire.Limits(
+            tolerance=float(tolerance),
+            force_floor=float(force_floor),
+            dt_max=fire.DT_FACTOR / np.sqrt(stiffest),
+            clamp=0.1 * smallest,
+            skin=skin * largest,
+        )
+        control = self._minimizer.control
+        control[fire.DT] = fire.DT_START * self._limits.dt_max
+        control[fire.ALPHA] = fire.ALPHA_START
+        control[fire.PENDING] = 1.0
+        self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
+
+    def run(self, max_iterations: int) -> Report:
+        """Go on for at most ``max_iterations`` force evaluations; the GIL is free meanwhile."""
+        left = min(max_iterations, self.max_iterations - self.iterations)
+        while self._reason is StopReason.BUDGET and left > 0:
+            code, used = fire.run(self._minimizer, self._box, self._rigid, self._limits, left)
+            self.iterations += used
+            left -= used
+            if code == fire.LISTS_STALE:
+                self._relist()
+            else:
+                self._reason = _REASONS[code]
+        if self._reason is StopReason.BUDGET and self.iterations >= self.max_iterations:
+            self._reason = StopReason.ITERATION_LIMIT
+        return self.report()
+
+    def report(self) -> Report:
+        """How it stands now."""
+        control = self._minimizer.control
+        return Report(
+            reason=self._reason,
+            energy=float(control[fire.ENERGY]),
+            start_energy=float(control[fire.START_ENERGY]),
+            residual=float(control[fire.RESIDUAL]),
+            mean_contact_force=float(control[fire.SCALE]),
+            iterations=self.iterations,
+        )
+
+    def write_back(self) -> None:
+        """Put the relaxed state into the packing, in the packing's own order."""
+        self.packing.state[:, self._minimizer.identity] = self._minimizer.state
+
+    def forces(self) -> NDArray[np.float64]:
+        """Generalised forces (5, N) [k R] of the latest evaluation, in the packing's own order."""
+        forces = np.empty_like(self._minimizer.force)
+        forces[:, self._minimizer.identity] = self._minimizer.force
+        return forces
+
+    def _relist(self) -> None:
+        while True:
+            answer = fire.relist(self._minimizer, self._box, self._rigid, self._limits.skin)
+            if answer == neighbors.FIT:
+                return
+            lists = self._minimizer.lists
+            grains, pairs, slots = len(self.packing), len(lists.first), len(lists.count)
+            if answer == neighbors.RIGID_FULL:
+                assert self._rigid is not None
+                room = 2 * len(self._rigid.grain)
+                self._rigid = self._rigid._replace(grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64))
+                continue
+            if answer == neighbors.PAIRS_FULL:
+                pairs *= 2
+            else:
+                slots *= 2
+            self._minimizer = self._minimizer._replace(lists=neighbors.allocate(grains, pairs, slots))
+
+
+def _minimizer(packing: Packing) -> fire.Minimizer:
+    count = len(packing)
+    nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
+    rest_area = packing.rest_radius**2
+    shape_stiffness = 2.0 * shape_modulus(nu, stiffness)
+    # A grain that resists area or shape far more than a contact does is made heavier, so that dt need not shrink for it.
+    own = 2.0 * deformation_stiffness(nu, stiffness) * (1.0 + np.abs(nu))
+    mass = fire.SHAPE_MASS * np.maximum(1.0, own / (fire.SHAPE_MASS * stiffness))
+    inverse_mass = np.ones((5, count))
+    inverse_mass[2:] = 1.0 / mass
+    return fire.Minimizer(
+        state=packing.state.copy(),
+        velocity=np.zeros((5, count)),
+        force=np.zeros((5, count)),
+        inverse_mass=inverse_mass,
+        reference=np.zeros((5, count)),
+        support=np.zeros((3, count)),
+        grains=fire.Grains(
+            contact_stiffness=stiffness.copy(),
+            rest_area=rest_area,
+            area_stiffness=area_modulus(nu, stiffness) / rest_area,
+            shape_stiffness=shape_stiffness,
+        ),
+        lists=neighbors.allocate(count, 6 * count, 24),
+        identity=np.arange(count),
+        scratch=np.zeros(count),
+        scratch_identity=np.zeros(count, dtype=np.int64),
+        control=np.zeros(14),
+    )

@@ -1,0 +1,200 @@
+"""Contacts between grains and rigid bodies: edges, vertices and discs, their forces on the grains and the reactions on the bodies.
+
+A primitive is one row of ``primitives`` float64 (M, 8): kind, x0, y0, ux, uy, then x1, y1 (edge) or wx, wy (vertex), and radius:
+
+- EDGE: from (x0, y0) along the unit vector u to (x1, y1), thickened by ``radius``. n is the normal on the grain's side,
+  Δ = h(n) + radius − distance: exact for an ellipse against a plane. Active while the point of contact, which for a tilted
+  ellipse is not the foot of the perpendicular, lies on the edge.
+- VERTEX: the point (x0, y0), thickened by ``radius``. Δ = min over n of h(n) + radius − n·d, which is the exact contact of an
+  ellipse with a point or a disc. u and w point along the adjoining edges towards the vertex (w = 0: only one); it is active only where the contact has left those edges, so exactly one of edge and vertex acts and the force is continuous when a grain
+  slides around a corner. (With the centre line in place of the minimum the tangential force jumps there by f h'/r: see MODEL.md.)
+- DISC: as another grain that cannot deform: n along the line of centres.
+
+A contact with a rigid body has the stiffness C of its grain.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.jit import kernel
+
+EDGE, VERTEX, DISC = 0, 1, 2
+COLUMNS = 8
+NEWTON_STEPS = 12
+
+
+class RigidTerms(NamedTuple):
+    """What the kernels know of the rigid bodies during one relaxation, and the list of near (grain, primitive) pairs."""
+
+    primitives: NDArray[np.float64]  # (M, 8)
+    grain: NDArray[np.int64]  # (capacity,)
+    primitive: NDArray[np.int64]  # (capacity,)
+    used: NDArray[np.int64]  # (1,) length of the list
+
+
+def allocate(primitives: NDArray[np.float64], grains: int) -> RigidTerms:
+    """Terms for ``grains`` grains near ``primitives`` (M, 8); room for every pair up to 64 a grain."""
+    capacity = max(64, min(len(primitives), 64) * grains)
+    return RigidTerms(
+        np.ascontiguousarray(primitives, dtype=np.float64),
+        np.zeros(capacity, dtype=np.int64),
+        np.zeros(capacity, dtype=np.int64),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+@kernel
+def support(s, u, v, nx, ny):
+    """h and dh/dφ of a grain with coefficients s, u, v along the unit vector n."""
+    c2 = nx * nx - ny * ny
+    s2 = 2.0 * nx * ny
+    h = math.sqrt(s + u * c2 + v * s2)
+    return h, (v * c2 - u * s2) / h
+
+
+@kernel
+def beyond(s, u, v, dx, dy, ux, uy):
+    """How far the contact point of a grain at d from the end of an edge lies beyond that end; u points along the edge to it. [R]
+
+    Edge and vertex decide by this one expression, in the same arithmetic, so that never both or neither of them acts.
+    """
+    side = 1.0 if ux * dy - uy * dx >= 0.0 else -1.0
+    _, slope = support(s, u, v, -side * uy, side * ux)
+    return dx * ux + dy * uy + side * slope
+
+
+@kernel
+def nearest_direction(s, u, v, dx, dy):
+    """Unit vector n that minimises h(n) − n·d, by Newton from the centre line. Returns (nx, ny)."""
+    r = math.sqrt(dx * dx + dy * dy)
+    if r == 0.0:
+        return 1.0, 0.0
+    nx = dx / r
+    ny = dy / r
+    for _ in range(NEWTON_STEPS):
+        c2 = nx * nx - ny * ny
+        s2 = 2.0 * nx * ny
+        h2 = s + u * c2 + v * s2
+        h = math.sqrt(h2)
+        slope = (v * c2 - u * s2) / h
+        curvature = (-2.0 * (u * c2 + v * s2) - slope * slope) / h
+        gradient = slope - (dy * nx - dx * ny)
+        second = curvature + dx * nx + dy * ny
+        # Deep inside an eccentric grain the expression is not convex; a step bounded downhill still finds its way.
+        turn = -gradient / max(abs(second), 0.1 * h)
+        turn = min(max(turn, -0.5), 0.5)
+        # Half-angle form of a rotation: no trigonometry, and n stays a unit vector.
+        half = 0.5 * turn
+        scale = 1.0 / (1.0 + half * half)
+        cosine = (1.0 - half * half) * scale
+        sine = 2.0 * half * scale
+        nx, ny = cosine * nx - sine * ny, cosine * ny + sine * nx
+        if abs(turn) < 1e-9:
+            break
+    return nx, ny
+
+
+@kernel
+def touch(primitive, x, y, s, u, v):
+    """Contact of one grain with one primitive: (overlap, nx, ny, h, slope), overlap < 0 where they do not touch.
+
+    n points from the body to the grain. ``slope`` is dh/dφ for a disc, whose n turns as the grain moves, and 0 otherwise.
+    """
+    kind = primitive[0]
+    dx = x - primitive[1]
+    dy = y - primitive[2]
+    radius = primitive[7]
+    if kind == EDGE:
+        ux = primitive[3]
+        uy = primitive[4]
+        if beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        if beyond(s, u, v, x - primitive[5], y - primitive[6], ux, uy) > 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        distance = ux * dy - uy * dx
+        side = 1.0 if distance >= 0.0 else -1.0
+        nx = -side * uy
+        ny = side * ux
+        h, _ = support(s, u, v, nx, ny)
+        return h + radius - side * distance, nx, ny, h, 0.0
+    r = math.sqrt(dx * dx + dy * dy)
+    if kind == DISC:
+        if r == 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        nx = dx / r
+        ny = dy / r
+        h, slope = support(s, u, v, nx, ny)
+        return h + radius - r, nx, ny, h, slope / r
+    if beyond(s, u, v, dx, dy, primitive[3], primitive[4]) <= 0.0:
+        return -1.0, 0.0, 0.0, 1.0, 0.0
+    wx = primitive[5]
+    wy = primitive[6]
+    if (wx != 0.0 or wy != 0.0) and beyond(s, u, v, dx, dy, wx, wy) <= 0.0:
+        return -1.0, 0.0, 0.0, 1.0, 0.0
+    nx, ny = nearest_direction(s, u, v, dx, dy)
+    h, _ = support(s, u, v, nx, ny)
+    return h + radius - nx * dx - ny * dy, nx, ny, h, 0.0
+
+
+@kernel
+def find_rigid_pairs(state, rigid, reach):
+    """List the grains that may touch a primitive before they have moved or grown by ``reach`` [R]. Returns False if too many."""
+    used = 0
+    capacity = rigid.grain.shape[0]
+    for m in range(rigid.primitives.shape[0]):
+        kind = rigid.primitives[m, 0]
+        x0 = rigid.primitives[m, 1]
+        y0 = rigid.primitives[m, 2]
+        ux = rigid.primitives[m, 3]
+        uy = rigid.primitives[m, 4]
+        length = 0.0
+        if kind == EDGE:
+            length = (rigid.primitives[m, 5] - x0) * ux + (rigid.primitives[m, 6] - y0) * uy
+        for i in range(state.shape[1]):
+            extent = state[2, i] + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + rigid.primitives[m, 7] + reach
+            dx = state[0, i] - x0
+            dy = state[1, i] - y0
+            if kind == EDGE:
+                along = min(max(dx * ux + dy * uy, 0.0), length)
+                dx -= along * ux
+                dy -= along * uy
+            if dx * dx + dy * dy < extent * extent:
+                if used == capacity:
+                    return False
+                rigid.grain[used] = i
+                rigid.primitive[used] = m
+                used += 1
+    rigid.used[0] = used
+    return True
+
+
+@kernel
+def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid):
+    """Add all grain–rigid contacts to ``force`` (whose rows 2–4 hold contact sums, see ``contacts``). Returns their energy [k R²]."""
+    energy = 0.0
+    for k in range(rigid.used[0]):
+        i = rigid.grain[k]
+        overlap, nx, ny, h, slope = touch(
+            rigid.primitives[rigid.primitive[k]],
+            state[0, i],
+            state[1, i],
+            support_coefficients[0, i],
+            support_coefficients[1, i],
+            support_coefficients[2, i],
+        )
+        if overlap <= 0.0:  # written so that nan passes, and is found
+            continue
+        f = contact_stiffness[i] * overlap
+        energy += 0.5 * f * overlap
+        force[0, i] += f * (nx + slope * ny)
+        force[1, i] += f * (ny - slope * nx)
+        g = f / h
+        force[2, i] += g
+        force[3, i] += g * (nx * nx - ny * ny)
+        force[4, i] += g * 2.0 * nx * ny
+    return energy
