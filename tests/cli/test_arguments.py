@@ -1,0 +1,190 @@
+"""Words of the command line to checked values."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from core.errors import InputError
+from sandbox import arguments, cli
+
+
+@given(
+    st.integers(160, 3840).map(lambda half: 2 * half),
+    st.integers(120, 2160).map(lambda half: 2 * half),
+)
+def test_every_even_size_in_range_is_read(width: int, height: int) -> None:
+    assert arguments.size(f"{width}x{height}") == (width, height)
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("1280", "WIDTHxHEIGHT"),
+        ("", "WIDTHxHEIGHT"),
+        ("-1280x720", "WIDTHxHEIGHT"),
+        ("1280.5x720", "WIDTHxHEIGHT"),
+        ("1281x721", "use 1282x722"),
+        ("0x0", "320x240 to 7680x4320"),
+        ("8000x720", "320x240 to 7680x4320"),
+        ("99999999x2", "WIDTHxHEIGHT"),
+    ],
+)
+def test_a_wrong_size_is_explained(text: str, advice: str) -> None:
+    with pytest.raises(InputError, match=advice):
+        arguments.size(text)
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "0.5", "121", "fast", ""])
+def test_a_wrong_number_is_explained(text: str) -> None:
+    with pytest.raises(InputError):
+        arguments.number(1.0, 120.0)(text)
+
+
+@pytest.mark.parametrize("text", ["0", "-3", "1.5", "1e3", "many", "10000000"])
+def test_a_wrong_count_is_explained(text: str) -> None:
+    with pytest.raises(InputError):
+        arguments.whole_number(1, arguments.MOST_STEPS)(text)
+
+
+def test_a_gif_cannot_be_faster_than_browsers_play_it() -> None:
+    arguments.check_fps(50.0, ".gif")
+    arguments.check_fps(120.0, ".mp4")
+    with pytest.raises(InputError, match=r"\.gif: use 50"):
+        arguments.check_fps(60.0, ".gif")
+
+
+def test_output_files_are_tried_before_any_work(tmp_path: Path) -> None:
+    def check(text: str) -> Path:
+        return arguments.output_file("--out", text, [".mp4", ".gif"])
+
+    good = tmp_path / "Film.MP4"
+    assert check(str(good)) == good
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "folder.mp4").mkdir()
+    (tmp_path / "file").touch()
+    for text, advice in [
+        (tmp_path / "film.avi", "must end in .mp4 or .gif"),
+        (tmp_path / "film", "must end in"),
+        (tmp_path / "nowhere" / "film.mp4", "make it first"),
+        (tmp_path / "file" / "film.mp4", "make it first"),
+        (tmp_path / "folder.mp4", "this is a folder"),
+    ]:
+        with pytest.raises(InputError, match=advice):
+            check(str(text))
+
+
+@pytest.mark.skipif(
+    sys.platform == "win32" or os.geteuid() == 0, reason="nothing is forbidden to this user"
+)
+def test_protected_places_are_noticed(tmp_path: Path) -> None:
+    film = tmp_path / "film.mp4"
+    film.touch(0o400)
+    with pytest.raises(InputError, match="write-protected"):
+        arguments.output_file("--out", str(film), [".mp4"])
+    folder = tmp_path / "locked"
+    folder.mkdir(0o500)
+    with pytest.raises(InputError, match="permission denied"):
+        arguments.output_file("--out", str(folder / "film.mp4"), [".mp4"])
+
+
+def test_two_options_cannot_name_one_file(tmp_path: Path) -> None:
+    table = tmp_path / "run.csv"
+    link = tmp_path / "film.mp4"
+    link.symlink_to(table)
+    arguments.check_different({"--out": tmp_path / "other.mp4", "--data": table})
+    arguments.check_different({"--out": None, "--data": None})
+    with pytest.raises(InputError, match="--out and --data name the same file"):
+        arguments.check_different({"--out": link, "--data": table})
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A parameter of the scene below."""
+
+    name: str
+    default: float = 1.0
+
+    def parse(self, text: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            raise InputError(f"{text!r} is not a number") from None
+
+
+@dataclass(frozen=True)
+class Toy:
+    """As much of a scene as the command line looks at."""
+
+    name: str = "toy"
+    parameters: tuple[Knob, ...] = (Knob("radius", 5.7), Knob("friction"))
+    packings: tuple[str, ...] = ("regular", "mixed")
+    defaults: dict[str, object] = field(default_factory=lambda: {"radius": 5.7, "friction": 1.0})
+
+    def settings(self, overrides: dict[str, object]) -> dict[str, object]:
+        return {**self.defaults, **overrides}
+
+
+def test_assignments_become_settings() -> None:
+    assert arguments.assignments(Toy(), ["radius = -2e0"]) == {"radius": -2.0, "friction": 1.0}
+    assert arguments.assignments(Toy(), []) == {"radius": 5.7, "friction": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("texts", "advice"),
+    [
+        (["radius"], "NAME=VALUE, such as --set radius=5.7"),
+        (["radius="], "NAME=VALUE"),
+        (["=3"], "NAME=VALUE"),
+        (["raduis=3"], r"did you mean radius\?.*radius, friction"),
+        (["radius=3", "radius=4"], "set twice"),
+        (["radius=wide"], "--set radius=wide: 'wide' is not a number"),
+    ],
+)
+def test_wrong_assignments_are_explained(texts: list[str], advice: str) -> None:
+    with pytest.raises(InputError, match=advice):
+        arguments.assignments(Toy(), texts)
+
+
+def test_packings_of_the_scene() -> None:
+    assert arguments.packing(Toy(), "mixed") == "mixed"
+    with pytest.raises(InputError, match=r"did you mean regular\?.*regular, mixed"):
+        arguments.packing(Toy(), "regluar")
+
+
+@pytest.mark.parametrize(
+    ("words", "advice"),
+    [
+        (["recrod", "hopper"], r"unknown command 'recrod' \(did you mean record\?\)"),
+        (["xyzzy"], "unknown command 'xyzzy': use list, play, record, replay"),
+        (["--versoin"], r"unknown option --versoin \(did you mean --version\?\)"),
+        (["record"], "required: SCENE; see python -m sandbox record --help"),
+        (["record", "hopper", "--output", "x"], r"--output \(did you mean --out\?\)"),
+        (["record", "hopper", "--out"], "--out: expected one argument"),
+        (["record", "hopper", "again"], "unexpected argument 'again'"),
+        (["record", "hopper", "--size", "13x9"], "--size: video needs even numbers"),
+        (["record", "hopper", "--fps", "0"], "--fps: 0 is out of range: use 1 to 120"),
+        (["record", "hopper", "--steps", "0"], "--steps: 0 is out of range"),
+        (["record", "hopper", "--seed", "-1"], "--seed: -1 is out of range"),
+        (["play", "--theme", "drak"], r"--theme: .*did you mean dark\?"),
+        (["play", "--scale", "9"], "--scale: 9 is out of range: use 0.5 to 4"),
+        (["list", "--jsno"], r"did you mean --json\?"),
+        (["replay"], "LOG.jsonl"),
+    ],
+)
+def test_usage_mistakes_are_one_line_with_advice(words: list[str], advice: str) -> None:
+    with pytest.raises(InputError, match=advice) as caught:
+        cli.parse(words)
+    assert "\n" not in str(caught.value)
+
+
+def test_no_command_is_play() -> None:
+    options = cli.parse([])
+    assert options.command == "play"
+    assert options.scene is None
