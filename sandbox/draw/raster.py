@@ -396,7 +396,9 @@ def draw_hull(
         y_high = max(y_high, sy)
     if count == 0 or not math.isfinite(total + area):
         return
-    turn = 0.0 if area == 0.0 else math.copysign(1.0, area)
+    # Below three corners the area is zero but for rounding.
+    flat = count < 3 or abs(scale * scale * area) < 1e-9
+    turn = 0.0 if flat else math.copysign(1.0, area)
     body = np.int64(fill)
     rim = np.int64(edge)
     reach = radius + 0.5

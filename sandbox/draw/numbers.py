@@ -1,0 +1,81 @@
+"""Round numbers for axes and scales, and numbers as text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+MINUS = "−"
+ONE_TWO_FIVE = (1.0, 2.0, 5.0, 10.0)
+FINER = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+def nice_ceiling(value: float, steps: tuple[float, ...] = ONE_TWO_FIVE) -> float:
+    """Smallest of the steps times a power of ten that is not below a positive value."""
+    if not (math.isfinite(value) and value > 0.0):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    for step in steps:
+        if value <= step * power * (1.0 + 1e-9):
+            return step * power
+    return 10.0 * power
+
+
+def ticks(low: float, high: float, most: int) -> list[float]:
+    """Round numbers within [low, high], at most about ``most`` intervals apart."""
+    if not (math.isfinite(low) and math.isfinite(high) and high > low):
+        return []
+    step = nice_ceiling((high - low) / max(most, 1))
+    first = math.ceil(low / step - 1e-9)
+    last = math.floor(high / step + 1e-9)
+    return [index * step for index in range(first, last + 1)]
+
+
+def decimals_for(step: float) -> int:
+    """How many decimals tell numbers apart that differ by one step."""
+    if not (math.isfinite(step) and step > 0.0):
+        return 0
+    return min(max(0, -math.floor(math.log10(step) + 1e-9)), 9)
+
+
+def number(value: float, decimals: int) -> str:
+    """A number with a true minus sign, and no minus on zero."""
+    if not math.isfinite(value):
+        return "—"
+    text = f"{value:.{decimals}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")
+    return text.replace("-", MINUS)
+
+
+def percent(share: float) -> str:
+    """An upper bound in words: 0.008 -> '1 %', 0.0004 -> '0.05 %'."""
+    bound = 100.0 * nice_ceiling(share)
+    return f"{bound:.{decimals_for(bound)}f} %"
+
+
+class RoundScale:
+    """The round top of a scale that follows its data without nervous jumps.
+
+    It grows at once when the data outgrow it, and shrinks only when they have become less than a
+    fifth of it, so that a picture and the next one can be compared.
+    """
+
+    def __init__(self) -> None:
+        self.top = 0.0
+
+    def follow(self, largest: float) -> float:
+        """Take in the largest value of the moment; returns the top."""
+        if math.isfinite(largest) and largest > 0.0:
+            wanted = nice_ceiling(largest)
+            if wanted > self.top or largest < 0.2 * self.top:
+                self.top = wanted
+        return self.top if self.top > 0.0 else 1.0
+
+
+def typical_largest(values: NDArray[np.float64]) -> float:
+    """The largest value but for a few outliers: the 99th percentile; 0 without values."""
+    finite = values[np.isfinite(values)]
+    return float(np.percentile(finite, 99.0)) if finite.size else 0.0

@@ -1,0 +1,183 @@
+"""What is drawn over the grains: force chains, the handle, the hand's line and its force."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+
+from sandbox.draw import raster
+from sandbox.draw.camera import Camera
+from sandbox.draw.numbers import decimals_for, number
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import HEADING
+from sandbox.draw.theme import HAND, magnitude_colours, mix
+from sandbox.draw.words import FORCE_UNIT
+from sandbox.frame import Contacts, Frame, HandleState
+
+CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
+CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
+FADE_FROM, FADE_TO = 0.004, 0.06  # share of the scale's top where chains begin to show, and show
+KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
+ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px]
+
+
+def draw_chains(
+    painter: Painter, rect: pygame.Rect, camera: Camera, contacts: Contacts, top: float
+) -> None:
+    """A line along every contact: width by the root of the force, colour by the force."""
+    force = np.ascontiguousarray(contacts.force, dtype=np.float64)
+    if not force.size:
+        return
+    with np.errstate(invalid="ignore"):
+        share = np.clip(force / top, 0.0, 1.0)
+        alpha = np.clip((force / top - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0)
+    widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
+    order = np.argsort(share, kind="stable")  # the strongest on top
+    ends = tuple(
+        np.ascontiguousarray(part[order], dtype=np.float64)
+        for part in (contacts.x0, contacts.y0, contacts.x1, contacts.y1)
+    )
+    raster.draw_lines(
+        painter.canvas(rect, camera.transform),
+        ends,
+        widest * np.sqrt(share[order]),
+        magnitude_colours(painter.theme, share[order]),
+        alpha[order],
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Hand:
+    """What the person at the window is doing; nothing in a film."""
+
+    hover: str | None = None  # handle under the cursor
+    held: str | None = None  # handle in the hand
+    target: tuple[float, float] | None = None  # where the hand wants it now [R]
+
+
+def draw_handles(
+    painter: Painter,
+    rect: pygame.Rect,
+    camera: Camera,
+    frame: Frame,
+    hand: Hand,
+    force_top: float,
+) -> None:
+    """Lines to the hand's targets, knobs, and force arrows with their numbers."""
+    for handle in frame.handles:
+        here = camera.to_screen(handle.x, handle.y)
+        if not (math.isfinite(here[0]) and math.isfinite(here[1])):
+            continue
+        held = hand.held == handle.name
+        target = hand.target if held and hand.target is not None else handle.target
+        if target is not None:
+            _draw_taut_line(painter, rect, here, camera.to_screen(*target))
+        active = held or handle.target is not None
+        lively = active or hand.hover == handle.name
+        _draw_knob(painter, rect, here, handle, lively=lively)
+    for handle in frame.handles:
+        _draw_force(painter, rect, camera, handle, force_top)
+
+
+def _draw_taut_line(
+    painter: Painter,
+    rect: pygame.Rect,
+    here: tuple[float, float],
+    there: tuple[float, float],
+) -> None:
+    scale = painter.scale
+    if not all(map(math.isfinite, there)) or math.dist(here, there) < 2.0 * scale:
+        return
+    painter.line(here, there, 4.5 * scale, painter.theme.ground, 0.7, rect)
+    painter.line(here, there, 2.0 * scale, HAND, clip=rect)
+    painter.disc(*there, 7.0 * scale, painter.theme.ground, alpha=0.7, clip=rect)
+    painter.ring(*there, 5.5 * scale, 2.5 * scale, HAND, clip=rect)
+
+
+def _draw_knob(
+    painter: Painter,
+    rect: pygame.Rect,
+    here: tuple[float, float],
+    handle: HandleState,
+    *,
+    lively: bool,
+) -> None:
+    """An orange disc with arrow heads along the ways it can go."""
+    scale = painter.scale
+    size = KNOB * scale * (1.25 if lively else 1.0)
+    ground = painter.theme.ground
+    x, y = here
+    painter.disc(x, y, size + 2.0 * scale, ground, alpha=0.75, clip=rect)
+    painter.disc(x, y, size, HAND, edge=mix(HAND, 0x000000, 0.3), edge_width=1.5 * scale, clip=rect)
+    if handle.axis is None:
+        ways = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
+    else:
+        ways = [handle.axis, (-handle.axis[0], -handle.axis[1])]
+    for way_x, way_y in ways:
+        tip = (x + 0.78 * size * way_x, y - 0.78 * size * way_y)
+        base = (x + 0.36 * size * way_x, y - 0.36 * size * way_y)
+        side = (-way_y * 0.36 * size, -way_x * 0.36 * size)
+        corners = [
+            tip,
+            (base[0] + side[0], base[1] + side[1]),
+            (base[0] - side[0], base[1] - side[1]),
+        ]
+        _triangle(painter, rect, corners, 0x101418)
+
+
+def _triangle(
+    painter: Painter, rect: pygame.Rect, corners: list[tuple[float, float]], colour: int
+) -> None:
+    places = np.array([[px, -py] for px, py in corners])
+    painter.hull(places, 0.0, colour, clip=rect)
+
+
+def _draw_force(
+    painter: Painter, rect: pygame.Rect, camera: Camera, handle: HandleState, top: float
+) -> None:
+    """An arrow from the handle along the force of the hand, and the force as a number."""
+    size = math.hypot(handle.fx, handle.fy)
+    x, y = camera.to_screen(handle.x, handle.y)
+    if not math.isfinite(size + x + y) or size < 0.005 * top:
+        return
+    scale = painter.scale
+    way = (handle.fx / size, -handle.fy / size)
+    start = (KNOB + 6.0) * scale
+    length = min(size / top, 1.2) * ARROW_LONGEST * scale
+    head = 13.0 * scale
+    root = (x + start * way[0], y + start * way[1])
+    neck = (root[0] + length * way[0], root[1] + length * way[1])
+    tip = (neck[0] + head * way[0], neck[1] + head * way[1])
+    ground = painter.theme.ground
+    side = (-way[1] * 0.62 * head, way[0] * 0.62 * head)
+    wings = [
+        tip,
+        (neck[0] + side[0], neck[1] + side[1]),
+        (neck[0] - side[0], neck[1] - side[1]),
+    ]
+    corners = np.array([[px, -py] for px, py in wings])
+    # A rim of ground colour sets the arrow off from grains of any colour.
+    painter.line(root, neck, 9.0 * scale, ground, 0.85, rect)
+    painter.hull(corners, 2.0 * scale, ground, alpha=0.85, clip=rect)
+    painter.line(root, neck, 5.0 * scale, HAND, clip=rect)
+    painter.hull(corners, 0.0, HAND, clip=rect)
+
+    label = f"{number(size, decimals_for(top) + 2)} {FORCE_UNIT}"
+    width = painter.type.width(label, HEADING, bold=True) + round(14 * scale)
+    height = painter.type.height(HEADING, bold=True) + round(4 * scale)
+    plate = pygame.Rect(0, 0, width, height)
+    away = 0.5 * (width * abs(way[0]) + height * abs(way[1])) + 5.0 * scale
+    plate.center = (round(tip[0] + away * way[0]), round(tip[1] + away * way[1]))
+    plate.clamp_ip(rect)
+    painter.box(
+        plate,
+        painter.theme.panel,
+        radius=6.0 * scale,
+        edge=HAND,
+        edge_width=1.5 * scale,
+        alpha=0.94,
+    )
+    painter.text(label, *plate.center, size=HEADING, bold=True, anchor="centre", clip=rect)

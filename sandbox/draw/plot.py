@@ -1,0 +1,177 @@
+"""The strip under the canvas: force against stroke, the current point marked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import BODY, SMALL
+from sandbox.draw.words import FORCE_UNIT, NO_CURVE, STROKE_AXIS
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """One line of the plot."""
+
+    stroke: Floats  # (M,) [R]
+    force: Floats  # (M,) [k R]
+    colour: int
+    dash: tuple[float, ...] = ()  # lengths on, off [px]
+
+
+def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """The points that a curve needs on screen: of those in one pixel column the first, the lowest,
+    the highest and the last, in their order. So a long curve keeps every peak."""
+    if x.shape[0] < 5:
+        return x, y
+    column = np.floor(x)
+    starts = np.flatnonzero(np.concatenate(([True], column[1:] != column[:-1])))
+    if starts.shape[0] * 4 >= x.shape[0]:
+        return x, y
+    ends = np.concatenate((starts[1:], [x.shape[0]])) - 1
+    run = np.repeat(np.arange(starts.shape[0]), ends - starts + 1)
+    by_height = np.lexsort((y, run))  # within every run from the lowest to the highest
+    kept = np.unique(np.concatenate((starts, by_height[starts], by_height[ends], ends)))
+    return x[kept], y[kept]
+
+
+def finite_part(curve: Curve) -> tuple[Floats, Floats]:
+    """Stroke and force where both are numbers."""
+    count = min(curve.stroke.shape[0], curve.force.shape[0])
+    stroke, force = curve.stroke[:count], curve.force[:count]
+    sound = np.isfinite(stroke) & np.isfinite(force)
+    return stroke[sound], force[sound]
+
+
+def limits(curves: Sequence[tuple[Floats, Floats]]) -> tuple[float, float, float, float]:
+    """Axes that hold all curves and zero: stroke low, high [R]; force low, high [k R]."""
+    strokes = np.concatenate([np.zeros(1), *(stroke for stroke, _ in curves)])
+    forces = np.concatenate([np.zeros(1), *(force for _, force in curves)])
+    low, high = float(strokes.min()), float(strokes.max())
+    if high - low <= 0.0:
+        high = low + 1.0
+    top = nice_ceiling(float(forces.max()), FINER) if forces.max() > 0.0 else 0.0
+    bottom = -nice_ceiling(float(-forces.min()), FINER) if forces.min() < -0.02 * top else 0.0
+    if top - bottom <= 0.0:
+        top = 1.0
+    return low, high, bottom, top
+
+
+class PlotBox:
+    """The inside of the axes and what maps onto it."""
+
+    def __init__(self, rect: pygame.Rect, axes: tuple[float, float, float, float]) -> None:
+        self.rect = rect
+        self.low, self.high, self.bottom, self.top = axes
+
+    def x(self, stroke: Floats | float) -> Floats:
+        """Pixels of strokes."""
+        share = (np.asarray(stroke, dtype=np.float64) - self.low) / (self.high - self.low)
+        return self.rect.left + share * self.rect.width
+
+    def y(self, force: Floats | float) -> Floats:
+        """Pixels of forces."""
+        share = (np.asarray(force, dtype=np.float64) - self.bottom) / (self.top - self.bottom)
+        return self.rect.bottom - share * self.rect.height
+
+
+def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], label: str) -> None:
+    """Axes, curves, the last point of the first curve with its number."""
+    if rect.height <= 0 or rect.width <= 0:
+        return
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    painter.fill(rect, theme.panel)
+    painter.fill(pygame.Rect(rect.left, rect.top, rect.width, max(round(scale), 1)), theme.hairline)
+    parts = [finite_part(curve) for curve in curves]
+    axes = limits(parts)
+    text = type_.height(SMALL)
+    pad = round(8 * scale)
+    force_ticks = ticks(axes[2], axes[3], max(int((rect.height - 3 * text) / (1.6 * text)), 1))
+    force_digits = decimals_for(force_ticks[1] - force_ticks[0] if len(force_ticks) > 1 else 1.0)
+    names = [number(value, force_digits) for value in force_ticks]
+    gutter = max((type_.width(name, SMALL) for name in names), default=0) + 2 * pad
+
+    # The headline: what is plotted at the left, its present value at the right.
+    current = ""
+    if parts and parts[0][0].size:
+        digits = decimals_for(axes[3] - axes[2]) + 2
+        current = f"{number(float(parts[0][1][-1]), digits)} {FORCE_UNIT}"
+    line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
+    right = rect.right - 2 * pad
+    shown = painter.text(current, right, line, size=BODY, bold=True, anchor="right")
+    room = (shown.left if current else right) - rect.left - gutter - 2 * pad
+    painter.text(
+        type_.shortened(label, SMALL, room),
+        rect.left + gutter,
+        line,
+        size=SMALL,
+        colour=theme.soft_text,
+    )
+
+    top = line + type_.height(BODY) // 2 + round(6 * scale)
+    bottom = rect.bottom - text - round(8 * scale)
+    box = PlotBox(
+        pygame.Rect(rect.left + gutter, top, right - rect.left - gutter, bottom - top), axes
+    )
+    if box.rect.width < 10 or box.rect.height < 10:
+        return
+    _draw_axes(painter, box, force_ticks, names)
+    if not current:
+        painter.text(
+            NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
+        )
+        return
+    inside = box.rect.inflate(round(12 * scale), round(12 * scale))
+    for curve, (stroke, force) in reversed(list(zip(curves, parts, strict=True))):
+        x, y = thinned(box.x(stroke), box.y(force))
+        dash = [length * scale for length in curve.dash]
+        painter.polyline(x, y, 2.0 * scale, curve.colour, inside, dash)
+    stroke, force = parts[0]
+    last = float(box.x(stroke[-1])), float(box.y(force[-1]))
+    painter.disc(*last, 6.5 * scale, theme.panel, clip=inside)
+    painter.disc(*last, 4.5 * scale, curves[0].colour, clip=inside)
+
+
+def _draw_axes(
+    painter: Painter, box: PlotBox, force_ticks: Sequence[float], names: Sequence[str]
+) -> None:
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    thin = max(round(scale), 1)
+    for value, name in zip(force_ticks, names, strict=True):
+        y = round(float(box.y(value)))
+        strong = value == 0.0
+        colour = theme.soft_text if strong else theme.hairline
+        painter.fill(pygame.Rect(box.rect.left, y, box.rect.width, thin), colour)
+        painter.text(
+            name,
+            box.rect.left - round(8 * scale),
+            y,
+            size=SMALL,
+            colour=theme.soft_text,
+            anchor="right",
+        )
+    unit = type_.width(STROKE_AXIS, SMALL)
+    line = box.rect.bottom + round(5 * scale) + type_.height(SMALL) // 2
+    painter.text(
+        STROKE_AXIS, box.rect.right, line, size=SMALL, colour=theme.soft_text, anchor="right"
+    )
+    free = box.rect.right - unit - round(14 * scale)
+    widest = type_.width("0000", SMALL) * 2
+    stroke_ticks = ticks(box.low, box.high, max(box.rect.width // widest, 1))
+    step = stroke_ticks[1] - stroke_ticks[0] if len(stroke_ticks) > 1 else 1.0
+    for value in stroke_ticks:
+        x = float(box.x(value))
+        name = number(value, decimals_for(step))
+        painter.fill(
+            pygame.Rect(round(x), box.rect.bottom, thin, round(4 * scale)), theme.soft_text
+        )
+        if x + 0.5 * type_.width(name, SMALL) <= free:
+            painter.text(name, x, line, size=SMALL, colour=theme.soft_text, anchor="centre")

@@ -1,0 +1,145 @@
+"""The whole picture of a Frame, for window and film alike."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pygame
+import pygame.surfarray
+from numpy.typing import NDArray
+
+from sandbox.draw.camera import Camera
+from sandbox.draw.layout import Layout, layout
+from sandbox.draw.numbers import RoundScale, typical_largest
+from sandbox.draw.overlays import Hand, draw_chains, draw_handles
+from sandbox.draw.painter import Painter
+from sandbox.draw.plot import Curve, draw_plot
+from sandbox.draw.status import draw_header, draw_status
+from sandbox.draw.text import BODY, Type
+from sandbox.draw.theme import packing_colour, theme_named
+from sandbox.draw.world import draw_bodies, draw_grains
+from sandbox.frame import Frame
+
+MARGIN = 14.0  # round the scene at scale 1 [px]
+
+
+class Renderer:
+    """Draws Frames of one run into one surface. Needs no display.
+
+    It remembers the tops of the two force scales only, so that they don't jump from picture to
+    picture; call :meth:`forget` when another run begins.
+    """
+
+    def __init__(
+        self,
+        size: tuple[int, int] = (1280, 720),
+        scale: float = 1.0,
+        theme: str = "dark",
+        chains: bool = True,
+    ) -> None:
+        self.chains = chains
+        self.theme = theme_named(theme)
+        self.type = Type(scale)
+        self.surface = pygame.Surface(size, 0, 32)
+        self.layout: Layout = layout(size, scale)
+        self.camera = Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0)
+        self._chain_scale = RoundScale()
+        self._hand_scale = RoundScale()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height [px]."""
+        return self.surface.get_size()
+
+    @property
+    def scale(self) -> float:
+        """UI scale: 1 is for a screen on the desk, 2 or 3 for the back row."""
+        return self.type.scale
+
+    def resize(self, size: tuple[int, int], scale: float | None = None) -> None:
+        """Another window size or UI scale."""
+        if scale is not None and scale != self.type.scale:
+            self.type = Type(scale)
+        if size != self.size:
+            self.surface = pygame.Surface(size, 0, 32)
+        self.layout = layout(size, self.type.scale)
+
+    def set_theme(self, name: str) -> None:
+        """Dark or light."""
+        self.theme = theme_named(name)
+
+    def forget(self) -> None:
+        """Start the force scales afresh."""
+        self._chain_scale = RoundScale()
+        self._hand_scale = RoundScale()
+
+    def painter(self) -> Painter:
+        """For drawing more on the surface; flush it afterwards."""
+        return Painter(self.surface, self.theme, self.type)
+
+    def draw(
+        self,
+        frame: Frame,
+        *,
+        hand: Hand | None = None,
+        fps: float | None = None,
+        paused: bool = False,
+        notices: tuple[str, ...] = (),
+    ) -> pygame.Surface:
+        """Draw a frame; returns the renderer's surface, which the next call overwrites.
+
+        ``notices`` are the window's own, shown with the frame's.
+        """
+        painter = self.painter()
+        places = self.layout
+        self.camera = Camera.fit(frame.bounds, places.canvas, MARGIN * self.scale)
+        painter.fill(places.canvas, self.theme.ground)
+        draw_grains(painter, places.canvas, self.camera, frame, faded=self.chains)
+        draw_bodies(painter, places.canvas, self.camera, frame)
+        chain_top = None
+        if self.chains:
+            chain_top = self._chain_scale.follow(typical_largest(frame.contacts.force))
+            draw_chains(painter, places.canvas, self.camera, frame.contacts, chain_top)
+        forces = [math.hypot(handle.fx, handle.fy) for handle in frame.handles]
+        hand_top = self._hand_scale.follow(max(forces, default=0.0))
+        draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)
+        draw_header(painter, places.header, frame, chain_top)
+        curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
+        draw_plot(painter, places.plot, [curve], frame.curve_label)
+        draw_status(painter, places.status, frame, fps=fps, paused=paused)
+        self._draw_notices(painter, (*frame.notices, *notices))
+        painter.flush()
+        return self.surface
+
+    def _draw_notices(self, painter: Painter, notices: tuple[str, ...]) -> None:
+        """Plain words on plates at the foot of the canvas, the newest lowest."""
+        scale, canvas = self.scale, self.layout.canvas
+        bottom = canvas.bottom - round(10 * scale)
+        for notice in reversed(notices):
+            room = canvas.width - round(56 * scale)
+            text = self.type.shortened(notice, BODY, room)
+            plate = pygame.Rect(
+                0,
+                0,
+                self.type.width(text, BODY) + round(32 * scale),
+                self.type.height(BODY) + round(12 * scale),
+            )
+            plate.midbottom = (canvas.centerx, bottom)
+            if not text or plate.top < canvas.top:
+                return
+            painter.box(
+                plate,
+                self.theme.panel,
+                radius=0.5 * plate.height,
+                edge=self.theme.hairline,
+                edge_width=1.5 * scale,
+                alpha=0.94,
+            )
+            painter.text(text, *plate.center, anchor="centre")
+            bottom = plate.top - round(6 * scale)
+
+    def image(self, frame: Frame) -> NDArray[np.uint8]:
+        """A frame as an array for films, uint8 (height, width, 3)."""
+        pixels = pygame.surfarray.pixels3d(self.draw(frame))
+        return np.ascontiguousarray(pixels.transpose(1, 0, 2))

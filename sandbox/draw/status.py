@@ -1,0 +1,208 @@
+"""The status line (what is shown, and whether to believe it) and the header with the legend."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+
+from sandbox.draw import raster, words
+from sandbox.draw.numbers import decimals_for, number, percent
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import BODY, HEADING, SMALL
+from sandbox.draw.theme import AUXETIC, REGULAR, Theme, magnitude_colours, mix
+from sandbox.frame import CONVERGED, Frame
+
+
+@dataclass(frozen=True, slots=True)
+class Lamp:
+    """One look at the state of the computation."""
+
+    colour: int
+    words: str
+
+
+def lamp(frame: Frame, theme: Theme) -> Lamp:
+    """Green: settled to the tolerance; amber: on the way; red: don't believe the picture."""
+    if frame.stop_reason in words.BROKEN:
+        return Lamp(theme.bad, words.STOPPED[frame.stop_reason])
+    if not math.isfinite(frame.residual) or frame.residual > 1.0:
+        error = words.NO_FORCES
+    else:
+        error = words.FORCE_ERROR.format(error=percent(max(frame.residual, 1e-6)))
+    if frame.busy:
+        return Lamp(theme.working, f"{words.SETTLING} · {error}")
+    if frame.stop_reason == CONVERGED:
+        return Lamp(theme.good, f"{words.SETTLED} · {error}")
+    reason = words.STOPPED.get(frame.stop_reason, frame.stop_reason)
+    near = frame.residual <= 10.0 * frame.tolerance
+    return Lamp(theme.working if near else theme.bad, f"{reason} · {error}")
+
+
+@dataclass(frozen=True, slots=True)
+class _Item:
+    """A part of a line: its text, how long to keep it (low numbers first to go)."""
+
+    text: str
+    rank: int
+    least: str = ""  # text whose width is reserved, so that counting moves nothing
+
+
+def _width(painter: Painter, item: _Item) -> int:
+    return max(painter.type.width(item.text, BODY), painter.type.width(item.least, BODY))
+
+
+def draw_status(
+    painter: Painter, rect: pygame.Rect, frame: Frame, *, fps: float | None, paused: bool
+) -> None:
+    """Scene · packing · seed · increment, the lamp with its words, frames a second."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    painter.fill(rect, theme.panel)
+    painter.fill(pygame.Rect(rect.left, rect.top, rect.width, max(round(scale), 1)), theme.hairline)
+    pad, gap = round(14 * scale), round(22 * scale)
+    middle = rect.centery
+    state = lamp(frame, theme)
+    lamp_radius = 7.0 * scale
+    lamp_space = round(2 * lamp_radius + 8 * scale)
+
+    items = [
+        _Item(frame.scene, 2),
+        _Item(words.PACKINGS.get(frame.packing, frame.packing), 4),
+        _Item(words.SEED.format(seed=frame.seed), 1),
+        _Item(
+            words.INCREMENT.format(increment=frame.increment),
+            3,
+            words.INCREMENT.format(increment="0000"),
+        ),
+    ]
+    if frame.grains_out:
+        items.append(_Item(words.GRAINS_OUT.format(count=frame.grains_out), 5, "000 out"))
+    if frame.protocol:
+        items.append(_Item(words.DRIVE, 2))
+    if paused:
+        items.append(_Item(words.PAUSED, 6))
+    rate = _Item("" if fps is None else words.RATE.format(fps=fps), 0, "")
+    room = rect.width - 2 * pad
+    wanted = lamp_space + type_.width(state.words, BODY)
+    rate_width = (_width(painter, rate) + gap) if rate.text else 0
+    while items and sum(_width(painter, item) + gap for item in items) + wanted + rate_width > room:
+        if rate_width:
+            rate_width = 0
+            continue
+        items.remove(min(items, key=lambda item: item.rank))
+
+    x = rect.left + pad
+    for index, item in enumerate(items):
+        painter.text(item.text, x, middle, colour=theme.soft_text)
+        x += _width(painter, item) + gap
+        dot = x - gap // 2
+        if index + 1 < len(items):
+            painter.disc(dot, middle + scale, 1.6 * scale, theme.soft_text)
+    painter.disc(
+        x + lamp_radius,
+        middle,
+        lamp_radius,
+        state.colour,
+        edge=mix(state.colour, 0x000000, 0.3),
+        edge_width=1.5 * scale,
+    )
+    x += lamp_space
+    shown = type_.shortened(state.words, BODY, rect.right - pad - x - rate_width)
+    painter.text(shown, x, middle)
+    if rate_width:
+        painter.text(rate.text, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
+
+
+def draw_header(painter: Painter, rect: pygame.Rect, frame: Frame, chain_top: float | None) -> None:
+    """Title at the left; at the right the kinds of grains and, with chains, the force scale."""
+    if rect.height <= 0:
+        return
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    painter.fill(rect, theme.panel)
+    thin = max(round(scale), 1)
+    painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
+    pad = round(14 * scale)
+    left, right = rect.left + pad, rect.right - pad
+    title = type_.width(frame.title, HEADING, bold=True)
+    free = right - left - title - round(24 * scale)
+
+    used = 0
+    if chain_top is not None:
+        bar = _scale_bar_width(painter, chain_top)
+        if bar <= free:
+            _draw_scale_bar(painter, right - bar, rect.centery, chain_top)
+            used = bar + round(26 * scale)
+    auxetic = int(np.count_nonzero(frame.auxetic))
+    kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]
+    for names in (words.KINDS, words.KINDS_SHORT):
+        shown = [(kind, names[kind]) for kind, count in kinds if count]
+        gap = round(19 * scale)
+        width = sum(_legend_width(painter, name) + gap for _, name in shown) - gap
+        if width + used <= free:
+            x = right - used - width
+            for kind, name in shown:
+                _draw_legend(painter, x, rect.centery, kind, name)
+                x += _legend_width(painter, name) + gap
+            break
+    title_text = type_.shortened(frame.title, HEADING, right - left, bold=True)
+    painter.text(title_text, left, rect.centery, size=HEADING, bold=True)
+
+
+def _legend_width(painter: Painter, name: str) -> int:
+    return painter.type.width(name, BODY) + round(27 * painter.scale)
+
+
+def _draw_legend(painter: Painter, x: float, y: float, kind: str, name: str) -> None:
+    """A grain of the kind, as on the canvas, and its name."""
+    scale = painter.scale
+    radius = 10.0 * scale
+    colour = AUXETIC if kind == "auxetic" else REGULAR
+    rim = mix(colour, 0x000000, 0.38)
+    painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
+    if kind == "auxetic":
+        one = np.ones(1)
+        zero = np.zeros(1)
+        place = (np.array([x + radius]), np.array([-y]), radius * one, zero, zero)
+        raster.draw_bow_ties(
+            painter.canvas(),
+            place,
+            zero,
+            one,
+            np.ones(1, dtype=np.bool_),
+            painter.theme.ground,
+            1.0,
+        )
+    painter.text(name, x + 2 * radius + 7 * scale, y)
+
+
+def _scale_bar_parts(top: float) -> tuple[str, str, str]:
+    return words.CHAINS, "0", f"{number(top, decimals_for(top))} {words.FORCE_UNIT}"
+
+
+def _scale_bar_width(painter: Painter, top: float) -> int:
+    texts = sum(painter.type.width(text, SMALL) for text in _scale_bar_parts(top))
+    return texts + round((110 + 10 + 7 + 7) * painter.scale)
+
+
+def _draw_scale_bar(painter: Painter, x: float, y: float, top: float) -> None:
+    """A wedge: width and colour of the chains from no force to the top of the scale."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    name, low, high = _scale_bar_parts(top)
+    painter.text(name, x, y, size=SMALL, colour=theme.soft_text)
+    x += type_.width(name, SMALL) + 10 * scale
+    painter.text(low, x, y, size=SMALL, colour=theme.soft_text)
+    x += type_.width(low, SMALL) + 7 * scale
+    length = round(110 * scale)
+    places = x + np.arange(length) + 0.5
+    share = (np.arange(length) + 0.5) / length
+    half_height = 7.0 * scale * np.sqrt(share)
+    raster.draw_lines(
+        painter.canvas(),
+        (places, -y - half_height, places, -y + half_height),
+        np.full(length, 0.5),
+        magnitude_colours(theme, share),
+        np.ones(length),
+    )
+    painter.text(high, x + length + 7 * scale, y, size=SMALL, colour=theme.soft_text)

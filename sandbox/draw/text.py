@@ -1,0 +1,102 @@
+"""Text in the bundled font: measured, shortened and rendered with a cache.
+
+The font's digits all have one width, so a number that counts does not make its line jitter.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from functools import cache
+from pathlib import Path
+
+import pygame
+import pygame.font
+
+from sandbox.draw.theme import channels
+
+SMALL = 14  # px at scale 1; nothing is smaller
+BODY = 16
+HEADING = 20
+TITLE = 34
+
+_FILES = {False: "SandboxSans-Regular.otf", True: "SandboxSans-SemiBold.otf"}
+_CACHE_SIZE = 512
+
+
+def font_path(bold: bool = False) -> Path:
+    """The font file: beside this module in an installed program, in assets/ in the repository."""
+    here = Path(__file__).resolve().parent
+    places = (here / "fonts", here.parents[1] / "assets" / "fonts")
+    for place in places:
+        if (place / _FILES[bold]).is_file():
+            return place / _FILES[bold]
+    raise FileNotFoundError(
+        f"font {_FILES[bold]} is in none of {', '.join(str(place) for place in places)}"
+    )
+
+
+@cache
+def _font(size: int, bold: bool) -> pygame.font.Font:
+    if not pygame.font.get_init():
+        pygame.font.init()
+    return pygame.font.Font(str(font_path(bold)), size)
+
+
+class Type:
+    """The type at one UI scale."""
+
+    def __init__(self, scale: float) -> None:
+        self.scale = scale
+        self._cache: OrderedDict[tuple[str, int, bool, int], pygame.Surface] = OrderedDict()
+
+    def pixels(self, size: float) -> int:
+        """Font size in pixels of a size at scale 1; never below the smallest legible one."""
+        return max(round(size * self.scale), SMALL)
+
+    def height(self, size: float, bold: bool = False) -> int:
+        """Height of a line [px]."""
+        return _font(self.pixels(size), bold).get_height()
+
+    def width(self, text: str, size: float, bold: bool = False) -> int:
+        """Width of a text [px]."""
+        return _font(self.pixels(size), bold).size(text)[0]
+
+    def shortened(self, text: str, size: float, width: float, bold: bool = False) -> str:
+        """The text, or as much of it as fits with an ellipsis; empty if not even that fits."""
+        if self.width(text, size, bold) <= width:
+            return text
+        kept, dropped = 0, len(text)
+        while dropped - kept > 1:
+            middle = (kept + dropped) // 2
+            if self.width(text[:middle].rstrip() + "…", size, bold) <= width:
+                kept = middle
+            else:
+                dropped = middle
+        return text[:kept].rstrip() + "…" if kept else ""
+
+    def wrapped(self, text: str, size: float, width: float, bold: bool = False) -> list[str]:
+        """Lines no wider than the width, broken between words."""
+        lines: list[str] = []
+        line = ""
+        for word in text.split():
+            longer = f"{line} {word}" if line else word
+            if line and self.width(longer, size, bold) > width:
+                lines.append(line)
+                longer = word
+            line = longer
+        if line:
+            lines.append(line)
+        return [self.shortened(part, size, width, bold) for part in lines]
+
+    def render(self, text: str, size: float, colour: int, bold: bool = False) -> pygame.Surface:
+        """The text as a picture with alpha."""
+        key = (text, self.pixels(size), bold, colour)
+        found = self._cache.get(key)
+        if found is None:
+            found = _font(key[1], bold).render(text, True, channels(colour))
+            self._cache[key] = found
+            if len(self._cache) > _CACHE_SIZE:
+                self._cache.popitem(last=False)
+        else:
+            self._cache.move_to_end(key)
+        return found

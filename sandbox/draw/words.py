@@ -1,0 +1,73 @@
+"""Every word that is drawn, in one place: short, plain, sentence case."""
+
+from __future__ import annotations
+
+KINDS = {"regular": "regular: bulges", "auxetic": "auxetic: shrinks"}
+KINDS_SHORT = {"regular": "regular", "auxetic": "auxetic"}
+
+SETTLED = "settled"
+SETTLING = "settling"
+STOPPED = {
+    "converged": SETTLED,
+    "budget": "time used up, not settled",
+    "iteration limit": "iteration limit, not settled",
+    "not finite": "numbers went bad: press R to reset",
+    "collapsed": "a grain was crushed flat: press R to reset",
+}
+BROKEN = frozenset({"not finite", "collapsed"})
+FORCE_ERROR = "forces within {error}"
+NO_FORCES = "no forces yet"
+
+SEED = "seed {seed}"
+INCREMENT = "increment {increment}"
+RATE = "{fps:.0f} frames/s"
+PAUSED = "paused"
+DRIVE = "scripted drive"
+GRAINS_OUT = "{count} out"
+
+CHAINS = "force chains"
+FORCE_UNIT = "k R"
+STROKE_AXIS = "stroke [R]"
+NO_CURVE = "nothing has moved yet"
+
+HINT = "Drag the orange handle   ·   H shows all keys"
+
+SPLASH_TITLE = "Auxetic sandbox"
+SPLASH_ABOUT = "The first start compiles the physics: up to a minute. Later ones take seconds."
+BUSY_REBUILD = "Packing the grains again"
+
+MENU_TITLE = "Choose a scene"
+MENU_KEYS = "Arrow keys and Enter, or click   ·   1 2 3 packing   ·   T theme   ·   Esc quit"
+MENU_PACKING = "Packing"
+
+ERROR_TITLE = "This run has stopped"
+ERROR_ADVICE = "R  start this scene again      M  scene menu      Esc  quit"
+
+HELP_TITLE = "Keys"
+HELP = (
+    ("Mouse", "drag an orange handle"),
+    ("Space", "pause, go on"),
+    ("S  or  →", "one increment"),
+    ("R", "reset"),
+    ("1   2   3", "regular, auxetic, mixed"),
+    ("P", "next packing"),
+    ("N", "new seed"),
+    ("A", "scripted drive on, off"),
+    ("F", "force chains on, off"),
+    ("M  or  Tab", "scene menu"),
+    ("T", "dark or light"),
+    ("+   −", "larger, smaller text"),
+    ("F12", "screenshot"),
+    ("H  or  F1", "this page"),
+    ("Esc", "back, then quit"),
+)
+
+SAVED = "saved {name}"
+NOT_SAVED = "could not save {name}: {reason}"
+NEW_SEED = "new seed: {seed}"
+NEW_PACKING = "{packing} grains"
+CHAINS_ON = "force chains on"
+CHAINS_OFF = "force chains off"
+DRIVE_ON = "scripted drive on"
+DRIVE_OFF = "scripted drive off: the hand is yours"
+PACKINGS = {"regular": "regular", "auxetic": "auxetic", "mixed": "mixed"}
