@@ -53,10 +53,15 @@ class Parser(argparse.ArgumentParser):
             raise InputError(f"unexpected argument {words[0]!r}; see {self.prog} --help")
 
 
+def nearest(word: str, choices: Iterable[str]) -> str | None:
+    """The choice that ``word`` was probably meant to be, or None."""
+    return next(iter(get_close_matches(word.lower(), list(choices), n=1, cutoff=0.5)), None)
+
+
 def did_you_mean(word: str, choices: Iterable[str]) -> str:
     """`` (did you mean X?)`` for the choice nearest to ``word``, or nothing."""
-    near = get_close_matches(word.lower(), list(choices), n=1, cutoff=0.5)
-    return f" (did you mean {near[0]}?)" if near else ""
+    near = nearest(word, choices)
+    return f" (did you mean {near}?)" if near else ""
 
 
 def argument(parse: Callable[[str], T]) -> Callable[[str], T]:
@@ -90,9 +95,6 @@ def size(text: str) -> tuple[int, int]:
     if match is None:
         raise InputError(f"{text!r} is not a size: write WIDTHxHEIGHT, such as 1280x720")
     width, height = int(match[1]), int(match[2])
-    if width % 2 or height % 2:
-        even = f"{width + width % 2}x{height + height % 2}"
-        raise InputError(f"video needs even numbers, not {text}: use {even}")
     fits = all(
         low <= n <= high
         for low, n, high in zip(SMALLEST_SIZE, (width, height), LARGEST_SIZE, strict=True)
@@ -100,6 +102,9 @@ def size(text: str) -> tuple[int, int]:
     if not fits:
         low, high = ("{}x{}".format(*limit) for limit in (SMALLEST_SIZE, LARGEST_SIZE))
         raise InputError(f"{text} is out of range: use a size from {low} to {high}")
+    if width % 2 or height % 2:
+        even = f"{width + width % 2}x{height + height % 2}"
+        raise InputError(f"video needs even numbers, not {text}: use {even}")
     return width, height
 
 
