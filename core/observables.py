@@ -1,0 +1,221 @@
+"""What is measured on a packing. Each function says its definition, unit and source; none changes anything."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import neighbors, rigid_contacts
+from core.contacts import grain_overlap
+from core.jit import kernel
+from core.packing import Packing
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class GrainContacts:
+    """Contacts between grains that carry force, (K,) each."""
+
+    i: Indices
+    j: Indices
+    fx: Floats  # force on grain i [k R]; on j the opposite
+    fy: Floats
+    normal_force: Floats  # C_ij Δ [k R]
+    overlap: Floats  # Δ [R]
+    dx: Floats  # branch vector from i to j, nearest image [R]
+    dy: Floats
+
+
+@dataclass(frozen=True)
+class RigidContacts:
+    """Contacts between grains and rigid bodies that carry force, (K,) each."""
+
+    grain: Indices
+    primitive: Indices
+    fx: Floats  # force on the grain [k R]; on the body the opposite
+    fy: Floats
+    normal_force: Floats  # C Δ [k R]
+    overlap: Floats  # Δ [R]
+    x: Floats  # a point on the line of action [R]: where they touch
+    y: Floats
+
+
+@kernel
+def _measure_pairs(state, support, stiffness, pairs, first, second, box, values):
+    """Fill rows fx, fy, f, Δ, dx, dy of ``values`` (6, K) for pairs that touch, packed to the front; returns their number."""
+    used = 0
+    for k in range(pairs):
+        i = first[k]
+        j = second[k]
+        overlap, dx, dy, c2, s2, hi, hj = grain_overlap(state, support, i, j, box)
+        if overlap > 0.0:
+            r2 = dx * dx + dy * dy
+            f = 2.0 * stiffness[i] * stiffness[j] / (stiffness[i] + stiffness[j]) * overlap
+            slope = (support[2, i] * c2 - support[1, i] * s2) / hi + (support[2, j] * c2 - support[1, j] * s2) / hj
+            along = f / np.sqrt(r2)
+            turn = f * slope / r2
+            values[0, used] = -along * dx - turn * dy
+            values[1, used] = -along * dy + turn * dx
+            values[2, used] = f
+            values[3, used] = overlap
+            values[4, used] = dx
+            values[5, used] = dy
+            first[used] = i
+            second[used] = j
+            used += 1
+    return used
+
+
+@kernel
+def _measure_rigid(state, support, stiffness, rigid, values):
+    """Fill rows fx, fy, f, Δ, x, y of ``values`` (6, K) for grain–body contacts, packed to the front; returns their number."""
+    used = 0
+    for k in range(rigid.used[0]):
+        i = rigid.grain[k]
+        row = rigid.primitives[rigid.primitive[k]]
+        overlap, nx, ny, h, slope = rigid_contacts.touch(
+            row, state[0, i], state[1, i], support[0, i], support[1, i], support[2, i]
+        )
+        if overlap > 0.0:
+            f = stiffness[i] * overlap
+            values[0, used] = f * (nx + slope * ny)
+            values[1, used] = f * (ny - slope * nx)
+            values[2, used] = f
+            values[3, used] = overlap
+            if row[0] == rigid_contacts.DISC:
+                # The tangential part of this law turns the grain, not the disc: on the body it acts at the centre.
+                values[4, used] = row[1]
+                values[5, used] = row[2]
+            else:
+                _, turn = rigid_contacts.support(support[0, i], support[1, i], support[2, i], nx, ny)
+                values[4, used] = state[0, i] - h * nx + turn * ny
+                values[5, used] = state[1, i] - h * ny - turn * nx
+            rigid.grain[used] = i
+            rigid.primitive[used] = rigid.primitive[k]
+            used += 1
+    return used
+
+
+def support_coefficients(packing: Packing) -> Floats:
+    """s, u, v of every grain (3, N): h(φ)² = s + u cos 2φ + v sin 2φ [R²]."""
+    p, q1, q2 = packing.state[2:]
+    return np.ascontiguousarray([p * p + q1 * q1 + q2 * q2, 2.0 * p * q1, 2.0 * p * q2])
+
+
+def grain_contacts(packing: Packing) -> GrainContacts:
+    """All contacts between grains of a packing."""
+    count = len(packing)
+    if count == 0:
+        none, zero = np.zeros(0, dtype=np.int64), np.zeros(0)
+        return GrainContacts(none, none, zero, zero, zero, zero, zero, zero)
+    box = None if packing.box is None else packing.box.kernel_form()
+    room = 6 * count
+    while True:
+        lists = neighbors.allocate(count, room, 1)
+        pairs = neighbors.find_pairs(packing.state, 0.0, lists, box)
+        if pairs >= 0:
+            break
+        room *= 2
+    values = np.empty((6, pairs))
+    support = support_coefficients(packing)
+    used = _measure_pairs(packing.state, support, packing.contact_stiffness, pairs, lists.first, lists.second, box, values)
+    return GrainContacts(lists.first[:used].copy(), lists.second[:used].copy(), *values[:, :used])
+
+
+def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
+    """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
+    rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
+    while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0):
+        room = 2 * len(rigid.grain)
+        rigid = rigid._replace(grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64))
+    values = np.empty((6, int(rigid.used[0])))
+    used = _measure_rigid(packing.state, support_coefficients(packing), packing.contact_stiffness, rigid, values)
+    return RigidContacts(rigid.grain[:used].copy(), rigid.primitive[:used].copy(), *values[:, :used])
+
+
+def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Floats:
+    """Force and torque of the grains on each body: (B, 3) of fx, fy [k R] and torque about the body's position [k R²].
+
+    ``owner`` (M,) names the body of each primitive, ``placement`` (B, 3) where the bodies are.
+    """
+    body = owner[contacts.primitive]
+    total = np.zeros((len(placement), 3))
+    lever_x = contacts.x - placement[body, 0]
+    lever_y = contacts.y - placement[body, 1]
+    np.add.at(total[:, 0], body, -contacts.fx)
+    np.add.at(total[:, 1], body, -contacts.fy)
+    np.add.at(total[:, 2], body, -(lever_x * contacts.fy - lever_y * contacts.fx))
+    return total
+
+
+def stress(contacts: GrainContacts, area: float, rigid: RigidContacts | None = None, packing: Packing | None = None) -> Floats:
+    """Stress tensor σ_ij = (1/area) Σ_c F_i d_j (2, 2) [k], compression positive.
+
+    Haver et al., doi:10.1073/pnas.2317915121, appendix "Numerical biaxial setup". Contacts with bodies count with the branch from
+    the grain's centre to the body; ``packing`` is then needed. σ_xy = σ_yx only in equilibrium: their difference tests that.
+    """
+    tensor = np.array(
+        [
+            [-np.sum(contacts.fx * contacts.dx), -np.sum(contacts.fx * contacts.dy)],
+            [-np.sum(contacts.fy * contacts.dx), -np.sum(contacts.fy * contacts.dy)],
+        ]
+    )
+    if rigid is not None and packing is not None:
+        dx = rigid.x - packing.x[rigid.grain]
+        dy = rigid.y - packing.y[rigid.grain]
+        tensor -= np.array(
+            [[np.sum(rigid.fx * dx), np.sum(rigid.fx * dy)], [np.sum(rigid.fy * dx), np.sum(rigid.fy * dy)]]
+        )
+    return tensor / area
+
+
+def pressure(tensor: Floats) -> float:
+    """P = ½ tr σ [k]."""
+    return 0.5 * float(np.trace(tensor))
+
+
+def coordination(packing: Packing, contacts: GrainContacts, rigid: RigidContacts | None = None) -> tuple[float, float]:
+    """Coordination number Z, contacts a grain: (all grains counted, rattlers left out).
+
+    A rattler has fewer than three contacts; they are taken out until none is left. Contacts with bodies hold a grain but are
+    shared with no other. van Hecke, doi:10.1088/0953-8984/22/3/033101.
+    """
+    count = len(packing)
+    if count == 0:
+        return 0.0, 0.0
+    held = np.zeros(count, dtype=np.int64) if rigid is None else np.bincount(rigid.grain, minlength=count)
+    alive = np.ones(len(contacts.i), dtype=bool)
+    frame = np.ones(count, dtype=bool)
+    while True:
+        degree = np.bincount(contacts.i[alive], minlength=count) + np.bincount(contacts.j[alive], minlength=count) + held
+        loose = frame & (degree < 3)
+        if not loose.any():
+            break
+        frame &= ~loose
+        alive &= frame[contacts.i] & frame[contacts.j]
+        held = np.where(frame, held, 0)
+    outer = 0 if rigid is None else len(rigid.grain)
+    everyone = (2.0 * len(contacts.i) + outer) / count
+    backbone = (2.0 * int(alive.sum()) + int(held.sum())) / max(int(frame.sum()), 1)
+    return everyone, backbone
+
+
+def packing_fraction(packing: Packing, area: float) -> float:
+    """φ = Σ π R0² / area, by rest areas."""
+    return packing.rest_area / area
+
+
+def force_drops(force: Floats) -> Floats:
+    """Sizes of the falls of a force–displacement curve (n,) [k R]: each unbroken run of decreasing force is one drop."""
+    change = np.diff(np.asarray(force, dtype=np.float64))
+    falling = change < 0.0
+    if not falling.any():
+        return np.zeros(0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], falling, [False]]).astype(np.int8)))
+    starts, ends = edges[::2], edges[1::2]
+    total = np.concatenate([[0.0], np.cumsum(change)])
+    return total[starts] - total[ends]

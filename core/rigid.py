@@ -1,0 +1,281 @@
+"""Rigid bodies: walls, pistons, intruders. The only module that knows pymunk.
+
+Bodies are moved by a pymunk Space, in which walls are static, a piston is kinematic, and an intruder is a dynamic body that hangs
+on a PivotJoint from a kinematic hand: the hand's pull is limited in speed and force, and walls stop the intruder, not the hand.
+The grains see the same shapes as primitives (``rigid_contacts``) and answer with a reaction on each body.
+
+A Space carries hidden state (cached impulses, contact arbiters), so each increment gets a new one, built from the bodies'
+positions alone. What follows then depends on nothing but those: a replay, an undo and a restored file move as the first run did.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+
+from core.errors import InputError
+from core.rigid_contacts import COLUMNS, DISC, EDGE, VERTEX
+
+Floats = NDArray[np.float64]
+Point = tuple[float, float]
+
+SUBSTEPS = 4
+HELD_MASS = 50.0  # [k · increment²]: a pull beyond the hand's limit by 1 k R gives way 0.01 R an increment
+SAME_POINT = 1e-9  # [R] segment ends closer than this are joined
+
+
+@dataclass
+class RigidBody:
+    """One body. Shapes are in the body's own frame [R]; ``position`` [R] and ``angle`` [rad] place them.
+
+    role: wall, piston, intruder or body. Static unless ``held`` (a hand can drag it anywhere) or ``axis`` (unit vector: it slides
+    along that line, and ``travel`` bounds how far from where it stood first [R]). ``force_limit`` [k R]: the hand gives way there.
+    """
+
+    name: str
+    role: str = "wall"
+    position: Point = (0.0, 0.0)
+    angle: float = 0.0
+    discs: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, radius
+    segments: list[tuple[float, float, float, float, float]] = field(default_factory=list)  # x0, y0, x1, y1, radius
+    polygons: list[tuple[tuple[Point, ...], float]] = field(default_factory=list)  # corners counter-clockwise, radius
+    held: bool = False
+    axis: Point | None = None
+    travel: tuple[float, float] = (-math.inf, math.inf)
+    force_limit: float = 40.0
+    home: Point = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.home = self.position
+        numbers = [*self.position, self.angle, *(v for row in (*self.discs, *self.segments) for v in row)]
+        numbers += [v for corners, radius in self.polygons for v in (*(c for corner in corners for c in corner), radius)]
+        if not all(map(math.isfinite, numbers)):
+            raise InputError(f"body {self.name!r}: positions and sizes must be finite numbers")
+        self.polygons = [(_convex(corners, self.name), radius) for corners, radius in self.polygons]
+
+    @property
+    def movable(self) -> bool:
+        """True if a hand can move it."""
+        return self.held or self.axis is not None
+
+    def to_world(self, points: Sequence[Point] | Floats) -> Floats:
+        """Body frame → world, (n, 2) [R]."""
+        c, s = math.cos(self.angle), math.sin(self.angle)
+        p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        return np.column_stack([self.position[0] + c * p[:, 0] - s * p[:, 1], self.position[1] + s * p[:, 0] + c * p[:, 1]])
+
+    def primitives(self) -> Floats:
+        """The body's shapes as rows for the kernels, (M, 8); see ``rigid_contacts``."""
+        rows: list[list[float]] = []
+        for x, y, radius in self.discs:
+            cx, cy = self.to_world([(x, y)])[0]
+            rows.append([DISC, cx, cy, 0.0, 0.0, 0.0, 0.0, radius])
+        edges: list[tuple[Point, Point, float]] = []
+        for x0, y0, x1, y1, radius in self.segments:
+            a, b = self.to_world([(x0, y0), (x1, y1)])
+            edges.append(((a[0], a[1]), (b[0], b[1]), radius))
+        rows += _edges_and_vertices(edges)
+        for corners, radius in self.polygons:
+            p = [(float(x), float(y)) for x, y in self.to_world(corners)]
+            rows += _edges_and_vertices([(p[k], p[(k + 1) % len(p)], radius) for k in range(len(p))])
+        return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+
+    def area(self) -> float:
+        """Area of discs and polygons, thickness included [R²]; thin segments count as nothing."""
+        area = sum(math.pi * r * r for _, _, r in self.discs)
+        for corners, radius in self.polygons:
+            p = np.asarray(corners)
+            around = float(np.sum(np.hypot(*(np.roll(p, -1, axis=0) - p).T)))
+            area += polygon_area(p) + around * radius + math.pi * radius**2
+        return area
+
+
+class RigidWorld:
+    """All rigid bodies of a scene."""
+
+    def __init__(self, bodies: Sequence[RigidBody] = ()) -> None:
+        """Raises InputError if two bodies share a name."""
+        self.bodies = list(bodies)
+        if len({body.name for body in self.bodies}) != len(self.bodies):
+            raise InputError("rigid bodies must have different names")
+
+    def __getitem__(self, name: str) -> RigidBody:
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise InputError(f"no rigid body is called {name!r}; there are: {', '.join(b.name for b in self.bodies)}")
+
+    def index(self, name: str) -> int:
+        """Place of a body in ``bodies`` and in arrays of reactions."""
+        return self.bodies.index(self[name])
+
+    def remove(self, name: str) -> None:
+        """Take a body away."""
+        self.bodies.remove(self[name])
+
+    def primitives(self) -> tuple[Floats, NDArray[np.int64]]:
+        """All primitives (M, 8) and the index of the body that each belongs to (M,)."""
+        rows = [body.primitives() for body in self.bodies]
+        owner = np.repeat(np.arange(len(rows)), [len(r) for r in rows])
+        return (np.concatenate(rows) if rows else np.zeros((0, COLUMNS))), owner.astype(np.int64)
+
+    def placement(self) -> Floats:
+        """x, y [R] and angle [rad] of every body, (B, 3)."""
+        return np.array([[*body.position, body.angle] for body in self.bodies], dtype=np.float64).reshape(-1, 3)
+
+    def place(self, placement: Floats) -> None:
+        """Put every body where ``placement`` (B, 3) says."""
+        for body, (x, y, angle) in zip(self.bodies, placement, strict=True):
+            body.position, body.angle = (float(x), float(y)), float(angle)
+
+    def advance(self, name: str, target: Point, step: float, reaction: Point = (0.0, 0.0)) -> tuple[Point, str | None]:
+        """Move a body towards ``target`` [R] by at most ``step`` [R]; ``reaction`` [k R] is the push of the grains on it.
+
+        Returns the displacement [R] and, where the hand is stopped by more than distance, why: "force limit", "end of travel" or
+        "wall". Raises InputError for a body that cannot be moved.
+        """
+        body = self[name]
+        if not body.movable:
+            raise InputError(f"{name!r} cannot be moved")
+        wanted = np.array(target) - body.position
+        if body.axis is not None:
+            return self._slide(body, float(np.dot(wanted, body.axis)), step, reaction)
+        distance = float(np.hypot(*wanted))
+        if distance > step:
+            wanted *= step / distance
+        return self._pull(body, wanted, step, reaction)
+
+    @staticmethod
+    def _slide(body: RigidBody, wanted: float, step: float, reaction: Point) -> tuple[Point, str | None]:
+        """A kinematic piston: exactly as far as it is told, within its travel, unless the grains push harder than the hand."""
+        assert body.axis is not None
+        axis = np.array(body.axis)
+        stood = float(np.dot(np.array(body.position) - body.home, axis))
+        asked = min(max(wanted, -step), step)
+        amount = min(max(stood + asked, body.travel[0]), body.travel[1]) - stood
+        push_back = float(np.dot(reaction, axis))
+        if amount != 0.0 and -push_back * math.copysign(1.0, amount) > body.force_limit:
+            return (0.0, 0.0), "force limit"
+        body.position = (body.position[0] + amount * float(axis[0]), body.position[1] + amount * float(axis[1]))
+        return (amount * float(axis[0]), amount * float(axis[1])), ("end of travel" if abs(amount) < abs(asked) else None)
+
+    def _pull(self, body: RigidBody, wanted: Floats, step: float, reaction: Point) -> tuple[Point, str | None]:
+        """A held body: dynamic, on a PivotJoint from the kinematic hand, among the static rest."""
+        space = pymunk.Space()
+        space.iterations = 30
+        space.collision_slop = 1e-4
+        held = pymunk.Body(HELD_MASS, math.inf)
+        held.position, held.angle = body.position, body.angle
+        too_hard = float(np.hypot(*reaction)) > body.force_limit
+        held.velocity = (0.0, 0.0) if too_hard else (float(wanted[0]), float(wanted[1]))
+        held.velocity_func = lambda b, _gravity, _damping, dt: _limit_speed(b, reaction, dt, step)
+        space.add(held, *_shapes(body, held))
+        for other in self.bodies:
+            if other is not body:
+                fixed = pymunk.Body(body_type=pymunk.Body.KINEMATIC if other.movable else pymunk.Body.STATIC)
+                fixed.position, fixed.angle = other.position, other.angle
+                space.add(fixed, *_shapes(other, fixed))
+        hand = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+        hand.position = body.position
+        hand.velocity = (float(wanted[0]), float(wanted[1]))
+        joint = pymunk.PivotJoint(hand, held, (0.0, 0.0), (0.0, 0.0))
+        joint.max_force = body.force_limit
+        joint.collide_bodies = False
+        space.add(hand, joint)
+        for _ in range(SUBSTEPS):
+            space.step(1.0 / SUBSTEPS)
+        moved = np.array([held.position.x, held.position.y]) - body.position
+        body.position = (held.position.x, held.position.y)
+        stopped = None
+        asked = float(np.hypot(*wanted))
+        if asked > 0.0 and float(np.dot(moved, wanted)) < 0.5 * asked**2:
+            stopped = "force limit" if too_hard else "wall"
+        return (float(moved[0]), float(moved[1])), stopped
+
+
+def _limit_speed(body: pymunk.Body, reaction: Point, dt: float, step: float) -> None:
+    """Velocity of a held body: pushed by the grains, and never faster than one step an increment."""
+    velocity = body.velocity + pymunk.Vec2d(*reaction) * (dt / HELD_MASS)
+    body.velocity = velocity if velocity.length <= step else velocity * (step / velocity.length)
+
+
+def _shapes(body: RigidBody, holder: pymunk.Body) -> list[pymunk.Shape]:
+    shapes: list[pymunk.Shape] = [pymunk.Circle(holder, r, (x, y)) for x, y, r in body.discs]
+    shapes += [pymunk.Segment(holder, (x0, y0), (x1, y1), r) for x0, y0, x1, y1, r in body.segments]
+    shapes += [pymunk.Poly(holder, list(corners), radius=r) for corners, r in body.polygons]
+    return shapes
+
+
+def _edges_and_vertices(edges: list[tuple[Point, Point, float]]) -> list[list[float]]:
+    """Rows for straight edges and for their ends; ends that two edges share become one vertex between them."""
+    rows: list[list[float]] = []
+    ends: list[tuple[Point, Point, float]] = []  # point, direction of its edge towards it, radius
+    for (x0, y0), (x1, y1), radius in edges:
+        length = math.hypot(x1 - x0, y1 - y0)
+        if length < SAME_POINT:
+            rows.append([DISC, x0, y0, 0.0, 0.0, 0.0, 0.0, radius])
+            continue
+        ux, uy = (x1 - x0) / length, (y1 - y0) / length
+        rows.append([EDGE, x0, y0, ux, uy, x1, y1, radius])
+        ends += [((x0, y0), (-ux, -uy), radius), ((x1, y1), (ux, uy), radius)]
+    while ends:
+        (x, y), (ux, uy), radius = ends.pop(0)
+        wx = wy = 0.0
+        for k, ((x2, y2), direction, radius2) in enumerate(ends):
+            if math.hypot(x2 - x, y2 - y) < SAME_POINT and radius2 == radius:
+                wx, wy = direction
+                ends.pop(k)
+                break
+        rows.append([VERTEX, x, y, ux, uy, wx, wy, radius])
+    return rows
+
+
+def _convex(corners: Sequence[Point], name: str) -> tuple[Point, ...]:
+    """The corners, counter-clockwise. Raises InputError unless they are those of a convex polygon."""
+    p = np.asarray(corners, dtype=np.float64)
+    if p.ndim != 2 or p.shape[0] < 3 or p.shape[1] != 2:
+        raise InputError(f"body {name!r}: a polygon needs three corners or more")
+    if polygon_area(p) < 0.0:
+        p = p[::-1]
+    sides = np.roll(p, -1, axis=0) - p
+    following = np.roll(sides, -1, axis=0)
+    turns = sides[:, 0] * following[:, 1] - sides[:, 1] * following[:, 0]
+    winding = float(np.sum(np.arctan2(turns, np.sum(sides * following, axis=1))))
+    if np.any(turns <= 0.0) or abs(winding - 2.0 * math.pi) > 1e-6:
+        raise InputError(f"body {name!r}: only convex polygons are supported; build other shapes from several")
+    return tuple((float(x), float(y)) for x, y in p)
+
+
+def polygon_area(corners: Sequence[Point] | Floats) -> float:
+    """Signed area of a polygon (V, 2), positive counter-clockwise [R²]."""
+    p = np.asarray(corners, dtype=np.float64)
+    q = np.roll(p, -1, axis=0)
+    return 0.5 * float(np.sum(p[:, 0] * q[:, 1] - q[:, 0] * p[:, 1]))
+
+
+def offset_path(points: Sequence[Point], distance: float, *, closed: bool) -> list[Point]:
+    """The path shifted to its right by ``distance`` [R] with mitred corners: a wall's centre line from the face that grains see."""
+    p = np.asarray(points, dtype=np.float64)
+    count = len(p)
+    sides = [(p[(k + 1) % count] - p[k]) for k in range(count if closed else count - 1)]
+    normals = [np.array([s[1], -s[0]]) / np.hypot(*s) for s in sides]
+    shifted: list[Point] = []
+    for k in range(count):
+        before = normals[k - 1] if (closed or k > 0) else normals[0]
+        after = normals[k % len(normals)] if (closed or k < count - 1) else normals[-1]
+        mitre = (before + after) / (1.0 + float(np.dot(before, after)))
+        corner = p[k] + distance * mitre
+        shifted.append((float(corner[0]), float(corner[1])))
+    return shifted
+
+
+def wall(name: str, path: Sequence[Point], thickness: float, *, closed: bool = False) -> RigidBody:
+    """A wall whose face is ``path``, with the grains on its left; ``thickness`` [R] lies on its right."""
+    line = offset_path(path, 0.5 * thickness, closed=closed)
+    pairs = list(zip(line, line[1:] + line[:1] if closed else line[1:], strict=False))
+    return RigidBody(name, "wall", segments=[(*a, *b, 0.5 * thickness) for a, b in pairs])
