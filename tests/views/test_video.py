@@ -8,6 +8,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import imageio.v2
 import numpy as np
@@ -30,6 +31,12 @@ def image(column: int = 0) -> NDArray[np.uint8]:
     picture[:] = GROUND
     picture[32:64, column : column + 32] = PINK
     return picture
+
+
+def facts_of(path: Path) -> dict[str, Any]:
+    reader: Any = imageio.v2.get_reader(path)
+    with reader:
+        return dict(reader.get_meta_data())
 
 
 def frames_of(path: Path) -> list[NDArray[np.uint8]]:
@@ -60,8 +67,7 @@ def test_film_is_made_for_the_web_and_for_projectors(tmp_path: Path) -> None:
             writer.write(image(i))
     content = path.read_bytes()
     assert content.index(b"moov") < content.index(b"mdat")  # plays while it still loads
-    with imageio.v2.get_reader(path) as reader:
-        facts = reader.get_meta_data()
+    facts = facts_of(path)
     assert facts["codec"] == "h264"
     assert facts["pix_fmt"].startswith("yuv420p")
     assert facts["fps"] == 25.0
@@ -73,8 +79,7 @@ def test_gif_repeats_for_ever_with_one_palette(tmp_path: Path) -> None:
     with VideoWriter(path, (WIDTH, HEIGHT), 20) as writer:
         for i in range(5):
             writer.write(image(i))
-    with imageio.v2.get_reader(path) as reader:
-        facts = reader.get_meta_data()
+    facts = facts_of(path)
     assert facts["loop"] == 0
     assert facts["duration"] == 50  # [ms]
     content = path.read_bytes()
