@@ -168,7 +168,7 @@ def test_packings_of_the_scene() -> None:
         (["record", "hopper", "--output", "x"], r"--output \(did you mean --out\?\)"),
         (["record", "hopper", "--out"], "--out: expected one argument"),
         (["record", "hopper", "again"], "unexpected argument 'again'"),
-        (["record", "hopper", "--size", "13x9"], "--size: video needs even numbers"),
+        (["record", "hopper", "--size", "641x361"], "--size: video needs even numbers"),
         (["record", "hopper", "--fps", "0"], "--fps: 0 is out of range: use 1 to 120"),
         (["record", "hopper", "--steps", "0"], "--steps: 0 is out of range"),
         (["record", "hopper", "--seed", "-1"], "--seed: -1 is out of range"),
