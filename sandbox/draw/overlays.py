@@ -49,6 +49,11 @@ def draw_chains(
     )
 
 
+def mark_scale(painter: Painter, rect: pygame.Rect) -> float:
+    """The scale of knobs and arrows: the UI's, but on a small canvas they leave the grains room."""
+    return min(painter.scale, min(rect.width, rect.height) / 260.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Hand:
     """What the person at the window is doing; nothing in a film."""
@@ -88,7 +93,7 @@ def _draw_taut_line(
     here: tuple[float, float],
     there: tuple[float, float],
 ) -> None:
-    scale = painter.scale
+    scale = mark_scale(painter, rect)
     if not all(map(math.isfinite, there)) or math.dist(here, there) < 2.0 * scale:
         return
     painter.line(here, there, 4.5 * scale, painter.theme.ground, 0.7, rect)
@@ -106,7 +111,7 @@ def _draw_knob(
     lively: bool,
 ) -> None:
     """An orange disc with arrow heads along the ways it can go."""
-    scale = painter.scale
+    scale = mark_scale(painter, rect)
     size = KNOB * scale * (1.25 if lively else 1.0)
     ground = painter.theme.ground
     x, y = here
@@ -143,7 +148,7 @@ def _draw_force(
     x, y = camera.to_screen(handle.x, handle.y)
     if not math.isfinite(size + x + y) or size < 0.005 * top:
         return
-    scale = painter.scale
+    scale = mark_scale(painter, rect)
     way = (handle.fx / size, -handle.fy / size)
     start = (KNOB + 6.0) * scale
     length = min(size / top, 1.2) * ARROW_LONGEST * scale
@@ -172,6 +177,12 @@ def _draw_force(
     away = 0.5 * (width * abs(way[0]) + height * abs(way[1])) + 5.0 * scale
     plate.center = (round(tip[0] + away * way[0]), round(tip[1] + away * way[1]))
     plate.clamp_ip(rect)
+    reach = KNOB * scale * 1.4
+    if plate.inflate(2.0 * reach, 2.0 * reach).collidepoint(x, y):  # no room beside the knob
+        if y - rect.top > rect.bottom - y:
+            plate.top = rect.top
+        else:
+            plate.bottom = rect.bottom
     painter.box(
         plate,
         painter.theme.panel,

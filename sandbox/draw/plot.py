@@ -95,6 +95,8 @@ def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], labe
     text = type_.height(SMALL)
     pad = round(8 * scale)
     force_ticks = ticks(axes[2], axes[3], max(int((rect.height - 3 * text) / (1.6 * text)), 1))
+    if len(force_ticks) < 2:  # one number is no scale
+        force_ticks = [axes[2], axes[3]]
     force_digits = decimals_for(force_ticks[1] - force_ticks[0] if len(force_ticks) > 1 else 1.0)
     names = [number(value, force_digits) for value in force_ticks]
     gutter = max((type_.width(name, SMALL) for name in names), default=0) + 2 * pad

@@ -21,24 +21,30 @@ class Lamp:
     """One look at the state of the computation."""
 
     colour: int
-    words: str
+    state: str
+    error: str  # how far the forces can be trusted; empty where that means nothing
+
+    @property
+    def words(self) -> str:
+        """Both parts."""
+        return f"{self.state} · {self.error}" if self.error else self.state
 
 
 def lamp(frame: Frame, theme: Theme) -> Lamp:
     """Green: settled to the tolerance; amber: on the way; red: don't believe the picture."""
     if frame.stop_reason in words.BROKEN:
-        return Lamp(theme.bad, words.STOPPED[frame.stop_reason])
+        return Lamp(theme.bad, words.STOPPED[frame.stop_reason], "")
     if not math.isfinite(frame.residual) or frame.residual > 1.0:
         error = words.NO_FORCES
     else:
         error = words.FORCE_ERROR.format(error=percent(max(frame.residual, 1e-6)))
     if frame.busy:
-        return Lamp(theme.working, f"{words.SETTLING} · {error}")
+        return Lamp(theme.working, words.SETTLING, error)
     if frame.stop_reason == CONVERGED:
-        return Lamp(theme.good, f"{words.SETTLED} · {error}")
+        return Lamp(theme.good, words.SETTLED, error)
     reason = words.STOPPED.get(frame.stop_reason, frame.stop_reason)
     near = frame.residual <= 10.0 * frame.tolerance
-    return Lamp(theme.working if near else theme.bad, f"{reason} · {error}")
+    return Lamp(theme.working if near else theme.bad, reason, error)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +115,9 @@ def draw_status(
         edge_width=1.5 * scale,
     )
     x += lamp_space
-    shown = type_.shortened(state.words, BODY, rect.right - pad - x - rate_width)
-    painter.text(shown, x, middle)
+    free = rect.right - pad - x - rate_width
+    whole = type_.width(state.words, BODY) <= free
+    painter.text(state.words if whole else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
         painter.text(rate.text, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
 
@@ -123,58 +130,58 @@ def draw_header(painter: Painter, rect: pygame.Rect, frame: Frame, chain_top: fl
     painter.fill(rect, theme.panel)
     thin = max(round(scale), 1)
     painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
-    pad = round(14 * scale)
+    pad, gap = round(14 * scale), round(26 * scale)
     left, right = rect.left + pad, rect.right - pad
-    title = type_.width(frame.title, HEADING, bold=True)
-    free = right - left - title - round(24 * scale)
-
-    used = 0
-    if chain_top is not None:
-        bar = _scale_bar_width(painter, chain_top)
-        if bar <= free:
-            _draw_scale_bar(painter, right - bar, rect.centery, chain_top)
-            used = bar + round(26 * scale)
     auxetic = int(np.count_nonzero(frame.auxetic))
     kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]
-    for names in (words.KINDS, words.KINDS_SHORT):
-        shown = [(kind, names[kind]) for kind, count in kinds if count]
-        gap = round(19 * scale)
-        width = sum(_legend_width(painter, name) + gap for _, name in shown) - gap
-        if width + used <= free:
-            x = right - used - width
-            for kind, name in shown:
-                _draw_legend(painter, x, rect.centery, kind, name)
-                x += _legend_width(painter, name) + gap
-            break
+    present = [kind for kind, count in kinds if count]
+    title = type_.width(frame.title, HEADING, bold=True) + gap
+    bar = 0 if chain_top is None else _scale_bar_width(painter, chain_top) + gap
+    long = _legend_width(painter, present, words.KINDS)
+    short = _legend_width(painter, present, words.KINDS_SHORT)
+
+    # What fits: whole title, legend in words, scale bar; then less of each.
+    room = right - left
+    names, with_bar = words.KINDS_SHORT, False
+    if title + long + bar <= room:
+        names, with_bar = words.KINDS, bar > 0
+    elif title + short + bar <= room:
+        with_bar = bar > 0
+    elif title + long <= room:
+        names = words.KINDS
+    if with_bar and chain_top is not None:
+        _draw_scale_bar(painter, right - bar + gap, rect.centery, chain_top)
+        right -= bar
+    width = _legend_width(painter, present, names)
+    if width <= right - left:
+        right -= width
+        _draw_legend(painter, right, rect.centery, [(kind, names[kind]) for kind in present])
+        right -= gap
     title_text = type_.shortened(frame.title, HEADING, right - left, bold=True)
     painter.text(title_text, left, rect.centery, size=HEADING, bold=True)
 
 
-def _legend_width(painter: Painter, name: str) -> int:
-    return painter.type.width(name, BODY) + round(27 * painter.scale)
+def _legend_width(painter: Painter, kinds: list[str], names: dict[str, str]) -> int:
+    symbol, gap = round(27 * painter.scale), round(19 * painter.scale)
+    return sum(painter.type.width(names[kind], BODY) + symbol + gap for kind in kinds) - gap
 
 
-def _draw_legend(painter: Painter, x: float, y: float, kind: str, name: str) -> None:
-    """A grain of the kind, as on the canvas, and its name."""
+def _draw_legend(painter: Painter, x: float, y: float, kinds: list[tuple[str, str]]) -> None:
+    """Grains as on the canvas, each with its name."""
     scale = painter.scale
     radius = 10.0 * scale
-    colour = AUXETIC if kind == "auxetic" else REGULAR
-    rim = mix(colour, 0x000000, 0.38)
-    painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
-    if kind == "auxetic":
-        one = np.ones(1)
-        zero = np.zeros(1)
-        place = (np.array([x + radius]), np.array([-y]), radius * one, zero, zero)
-        raster.draw_bow_ties(
-            painter.canvas(),
-            place,
-            zero,
-            one,
-            np.ones(1, dtype=np.bool_),
-            painter.theme.ground,
-            1.0,
-        )
-    painter.text(name, x + 2 * radius + 7 * scale, y)
+    for kind, name in kinds:
+        colour = AUXETIC if kind == "auxetic" else REGULAR
+        rim = mix(colour, 0x000000, 0.38)
+        painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
+        if kind == "auxetic":
+            zero, one = np.zeros(1), np.ones(1)
+            grain = (np.array([x + radius]), np.array([-y]), radius * one, zero, zero)
+            marked = np.ones(1, dtype=np.bool_)
+            ground = painter.theme.ground
+            raster.draw_bow_ties(painter.canvas(), grain, zero, one, marked, ground, 1.0)
+        painter.text(name, x + 2 * radius + 7 * scale, y)
+        x += painter.type.width(name, BODY) + round(27 * scale) + round(19 * scale)
 
 
 def _scale_bar_parts(top: float) -> tuple[str, str, str]:

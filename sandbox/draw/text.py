@@ -42,6 +42,17 @@ def _font(size: int, bold: bool) -> pygame.font.Font:
     return pygame.font.Font(str(font_path(bold)), size)
 
 
+def page_scale(
+    scale: float, size: tuple[int, int], designed: tuple[int, int] = (480, 360)
+) -> float:
+    """The UI scale for a page of text: larger where there is room, smaller where it would not fit.
+
+    ``designed``: the smallest window [px] that the page fits at scale 1.
+    """
+    fitting = min(size[0] / designed[0], size[1] / designed[1])
+    return min(1.3 * scale, max(fitting, SMALL / BODY))
+
+
 class Type:
     """The type at one UI scale."""
 

@@ -33,7 +33,7 @@ NO_CURVE = "nothing has moved yet"
 HINT = "Drag the orange handle   ·   H shows all keys"
 
 SPLASH_TITLE = "Auxetic sandbox"
-SPLASH_ABOUT = "The first start compiles the physics: up to a minute. Later ones take seconds."
+SPLASH_ABOUT = "The first start compiles the physics and takes longest."
 BUSY_REBUILD = "Packing the grains again"
 
 MENU_TITLE = "Choose a scene"
@@ -41,24 +41,24 @@ MENU_KEYS = "Arrow keys and Enter, or click   ·   1 2 3 packing   ·   T theme 
 MENU_PACKING = "Packing"
 
 ERROR_TITLE = "This run has stopped"
-ERROR_ADVICE = "R  start this scene again      M  scene menu      Esc  quit"
+ERROR_ADVICE = "R: start this scene again · M: scene menu · Esc: quit"
 
 HELP_TITLE = "Keys"
 HELP = (
-    ("Mouse", "drag an orange handle"),
-    ("Space", "pause, go on"),
-    ("S  or  →", "one increment"),
+    ("Mouse", "drag a handle"),
+    ("Space", "pause"),
+    ("S, →", "one increment"),
     ("R", "reset"),
-    ("1   2   3", "regular, auxetic, mixed"),
+    ("1  2  3", "regular, auxetic, mixed"),
     ("P", "next packing"),
     ("N", "new seed"),
-    ("A", "scripted drive on, off"),
-    ("F", "force chains on, off"),
-    ("M  or  Tab", "scene menu"),
+    ("A", "scripted drive"),
+    ("F", "force chains"),
+    ("M, Tab", "scene menu"),
     ("T", "dark or light"),
-    ("+   −", "larger, smaller text"),
+    ("+  −", "text size"),
     ("F12", "screenshot"),
-    ("H  or  F1", "this page"),
+    ("H, F1", "this page"),
     ("Esc", "back, then quit"),
 )
 

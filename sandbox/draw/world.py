@@ -27,6 +27,11 @@ def mark_openness(p: Floats, q1: Floats, q2: Floats, rest_radius: Floats) -> Flo
     return np.clip((area - CLOSED_AREA) / (1.0 - CLOSED_AREA), 0.0, 1.0)
 
 
+def outline_width(painter: Painter, camera: Camera) -> float:
+    """Constant on screen [px], but never so wide that it eats small grains."""
+    return min(OUTLINE * painter.scale, 0.14 * camera.scale)
+
+
 def grain_colours(theme: Theme, faded: bool) -> tuple[int, int, int, int]:
     """Fill and outline of regular grains, then of auxetic ones."""
     recede = FADED if faded else 0.0
@@ -48,7 +53,7 @@ def draw_grains(
     regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, faded)
     fill = np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill))
     rim = np.where(auxetic, np.uint32(auxetic_rim), np.uint32(regular_rim))
-    raster.draw_ellipses(canvas, grains, fill, rim, OUTLINE * painter.scale, 1.0)
+    raster.draw_ellipses(canvas, grains, fill, rim, outline_width(painter, camera), 1.0)
     turn = np.zeros(frame.grains) if frame.spin is None else frame.spin
     if bool(auxetic.any()):
         raster.draw_bow_ties(
@@ -99,7 +104,7 @@ def _draw_body(painter: Painter, rect: pygame.Rect, camera: Camera, body: BodySh
     colour = {"wall": theme.wall, "piston": theme.piston}.get(body.role, theme.intruder)
     edge = mix(colour, theme.text if theme.name == "dark" else 0x000000, 0.25)
     # A union of shapes: all outlines first, then all insides, so that none cuts through another.
-    width = 0.0 if body.role == "wall" else OUTLINE * painter.scale
+    width = 0.0 if body.role == "wall" else outline_width(painter, camera)
     for outline in (edge, colour) if width else (colour,):
         less = width if width and outline == colour else 0.0
         for disc in body.discs:
