@@ -67,6 +67,7 @@ class Quasistatic:
         self.reactions = np.zeros((len(world.bodies), 3))
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
+        self._placement: Floats = world.placement()
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._last_length = 0.0
         self._length = 0.0
@@ -83,6 +84,7 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
         self._moved, self._stopped = {}, {}
+        self._placement = self.world.placement()
         for name, target in targets.items():
             push = self.reactions[self.world.index(name)]
             moved, stopped = self.world.advance(name, target, self.settings.step, (float(push[0]), float(push[1])))
@@ -111,14 +113,19 @@ class Quasistatic:
         if report.reason is StopReason.BUDGET:
             return None
         if report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
-            # Keep the last good state: what is shown and saved is always finite.
+            # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self.packing.state[:] = self._start
+            self.world.place(self._placement)
         else:
             self._relaxation.write_back()
         self._relaxation = None
         self._last = self.packing.state - self._start
         self._last_length = self._length
         return self._observe(report)
+
+    def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
+        """All contacts as things stand now."""
+        return observables.grain_contacts(self.packing), observables.body_contacts(self.packing, self.world.primitives()[0])
 
     def progress(self) -> Report | None:
         """How the increment under way stands, or None."""

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 import pymunk
@@ -23,6 +24,7 @@ from core.rigid_contacts import COLUMNS, DISC, EDGE, VERTEX
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
+Role = Literal["wall", "piston", "intruder", "body"]
 
 SUBSTEPS = 4
 HELD_MASS = 50.0  # [k · increment²]: a pull beyond the hand's limit by 1 k R gives way 0.01 R an increment
@@ -38,7 +40,7 @@ class RigidBody:
     """
 
     name: str
-    role: str = "wall"
+    role: Role = "wall"
     position: Point = (0.0, 0.0)
     angle: float = 0.0
     discs: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, radius

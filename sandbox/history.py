@@ -1,0 +1,67 @@
+"""What happened, increment by increment: the columns of the table that is exported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Row:
+    """One finished increment. Forces are those of the grains on the handle."""
+
+    increment: int
+    stroke: float  # [R]
+    fx: float  # [k R]
+    fy: float  # [k R]
+    grains_out: int
+    energy: float  # [k R²]
+    residual: float  # relative
+    iterations: int
+    stop_reason: str
+    resisting: float  # force against the drive [k R]; follows from fx, fy and the direction of motion
+
+
+_HEADER = (
+    "increment",
+    "stroke [R]",
+    "force on handle x [k R]",
+    "force on handle y [k R]",
+    "grains out",
+    "energy [k R^2]",
+    "relative residual",
+    "FIRE iterations",
+    "stop reason",
+    "force against the drive [k R]",
+)
+
+
+class History:
+    """Rows of all increments since the last reset."""
+
+    def __init__(self) -> None:
+        self._rows: list[Row] = []
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, index: int) -> Row:
+        return self._rows[index]
+
+    def append(self, row: Row) -> None:
+        """Add a finished increment."""
+        self._rows.append(row)
+
+    def header(self) -> list[str]:
+        """Column names with units."""
+        return list(_HEADER)
+
+    def rows(self) -> Iterator[tuple[float | int | str, ...]]:
+        """One tuple an increment, in the order of the header."""
+        return (astuple(row) for row in self._rows)
+
+    def column(self, name: str) -> np.ndarray:
+        """One column (M,), by the attribute's name in ``Row``."""
+        return np.array([getattr(row, name) for row in self._rows])

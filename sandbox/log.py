@@ -1,0 +1,108 @@
+"""The log of a run: which scene, and every command with the number of increments after which it took effect. JSON lines.
+
+A log replays to the same state bits, on a slower machine too, since it names increments and not times.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.errors import InputError
+from core.files import atomic_write
+from sandbox.commands import Command, from_data, to_data
+
+FORMAT = "auxetic-sandbox log"
+VERSION = 1
+LARGEST = 256 * 1024 * 1024  # bytes
+MOST_INCREMENTS = 10_000_000
+
+
+@dataclass(frozen=True)
+class Log:
+    """A run: ``commands`` are (increments finished before, command), in order; it ended after ``end`` increments in ``hash``."""
+
+    scene: str
+    packing: str
+    seed: int
+    settings: dict[str, Any]
+    commands: tuple[tuple[int, Command], ...]
+    end: int
+    hash: str
+
+
+def write_log(path: str | os.PathLike[str], log: Log) -> None:
+    """Write a log whole or not at all. Raises OSError as the system does."""
+    head = {
+        "format": FORMAT,
+        "version": VERSION,
+        "scene": log.scene,
+        "packing": log.packing,
+        "seed": log.seed,
+        "settings": log.settings,
+    }
+    lines = [head, *({"at": at, **to_data(command)} for at, command in log.commands), {"end": log.end, "hash": log.hash}]
+    with atomic_write(path) as file:
+        file.write("".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines).encode())
+
+
+def read_log(path: str | os.PathLike[str]) -> Log:
+    """Read a log. Raises InputError for one that is missing, malformed, truncated, hostile or of another version."""
+    path = Path(path)
+    try:
+        if path.stat().st_size > LARGEST:
+            raise InputError(f"{path}: larger than any log of this program; not opened")
+        lines = path.read_bytes().decode("utf-8").splitlines()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error})") from None
+    if not lines:
+        raise InputError(f"{path}: the log is empty")
+    records = [_record(path, number, line) for number, line in enumerate(lines, 1)]
+    head, last = records[0], records[-1]
+    if head.get("format") != FORMAT:
+        raise InputError(f"{path}: not a log of this program (its first line does not say {FORMAT!r})")
+    if head.get("version") != VERSION:
+        raise InputError(f"{path}: log version {head.get('version')!r}, this program reads {VERSION}; update the program")
+    scene, packing, seed, settings = (head.get(key) for key in ("scene", "packing", "seed", "settings"))
+    if not (isinstance(scene, str) and isinstance(packing, str) and _whole(seed) and isinstance(settings, dict)):
+        raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
+    if len(records) < 2 or "end" not in last:
+        raise InputError(f"{path}: the log is truncated (its last line does not say where the run ended)")
+    commands: list[tuple[int, Command]] = []
+    before = 0
+    for number, record in enumerate(records[1:-1], 2):
+        at = record.pop("at", None)
+        if not _whole(at) or at < before:
+            raise InputError(f"{path}: line {number}: 'at' must be a whole number that never decreases")
+        try:
+            commands.append((at, from_data(record)))
+        except InputError as error:
+            raise InputError(f"{path}: line {number}: {error}") from None
+        before = at
+    end, digest = last["end"], last.get("hash")
+    if not _whole(end) or not before <= end <= MOST_INCREMENTS or not isinstance(digest, str):
+        raise InputError(f"{path}: the last line must give 'end', a number of increments, and 'hash'")
+    return Log(scene, packing, seed, settings, tuple(commands), end, digest)
+
+
+def _record(path: Path, number: int, line: str) -> dict[str, Any]:
+    try:
+        record = json.loads(line, parse_constant=lambda name: _refuse(name))
+    except (ValueError, RecursionError):
+        raise InputError(f"{path}: line {number} is not valid JSON; the log is damaged or truncated") from None
+    if not isinstance(record, dict):
+        raise InputError(f"{path}: line {number} is not a JSON object")
+    return record
+
+
+def _refuse(name: str) -> float:
+    raise ValueError(name)
+
+
+def _whole(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0

@@ -1,0 +1,475 @@
+"""THE loop: commands in → bodies move → grains relax → a row of history and a frame. Window, films and tests all run this one."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from core.errors import InputError
+from core.packing import Packing
+from core.quasistatic import Increment, Quasistatic
+from core.relaxation import StopReason
+from core.rigid import Point, RigidBody
+from core.rigid_contacts import DISC
+from core.warmup import compile_kernels
+from sandbox.commands import Change, Command, Grab, Move, Protocol, Release, Reset
+from sandbox.frame import BodyShape, Contacts, Frame, HandleState
+from sandbox.history import History, Row
+from sandbox.log import Log
+from sandbox.log import write_log as write_log_file
+from scenes import registry
+from scenes.scene import Check, Handle, Scene, Setup, Track, Values
+
+ARRIVED = 1e-6  # [R] a body this near its target is there
+STUCK = 1e-3  # of a step: a body that moves less than that is stopped
+COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
+COMPILE_SHARE = 0.5
+
+Progress = Callable[[str, float], None]
+
+
+class Session:
+    """A scene that runs. Everything but ``submit`` belongs to one thread, the solver's."""
+
+    def __init__(
+        self, scene: str, packing: str = "mixed", seed: int = 1, settings: Mapping[str, object] | None = None
+    ) -> None:
+        """Checks the request and is quick. Raises InputError."""
+        self.scene: Scene = registry.get(scene)
+        self.packing = self.scene.check_packing(packing)
+        self.seed = check_seed(seed)
+        self.settings: Values = self.scene.settings(settings)
+        self.history = History()
+        self._first = (scene, self.packing, self.seed, dict(self.settings))
+        self._pending: deque[Command] = deque()
+        self._lock = threading.Lock()
+        self._commands: list[tuple[int, Command]] = []
+        self._finished = 0  # increments since the session began, resets included
+        self._setup: Setup | None = None
+        self._progress: Progress | None = None
+
+    # -- building -------------------------------------------------------------------------------------------------------------
+
+    def build(self, progress: Progress | None = None) -> None:
+        """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
+        self._progress = progress
+        report = progress or (lambda text, share: None)
+        report(COMPILING, 0.0)
+        compile_kernels(None, True, lambda share: report(COMPILING, COMPILE_SHARE * share))
+        report(PACKING, COMPILE_SHARE)
+        setup = self.scene.build(
+            self.settings, self.packing, self.seed, lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share)
+        )
+        self._start_packing = setup.packing.copy()
+        self._start_placement = setup.world.placement()
+        self._begin(setup)
+        report("ready", 1.0)
+
+    def _begin(self, setup: Setup) -> None:
+        """Start from what was built: relax with all bodies at rest, and record that as increment 0."""
+        self._setup = setup
+        self._engine = Quasistatic(setup.packing, setup.world, setup.solver)
+        self.history = History()
+        self._targets: dict[str, Point] = {}
+        self._held: set[str] = set()
+        self._blocked: set[str] = set()
+        self._script: int | None = None
+        self._stroke = 0.0
+        self._out = 0
+        self._initial = len(setup.packing)
+        self._clear_since = 0.0  # stroke at which a grain last left
+        self._notices: list[str] = []
+        handle = setup.handles[0]
+        self._drive = handle
+        self._direction = np.array(handle.direction)
+        self._engine.begin({})
+        last: Increment | None = None
+        while last is None:
+            last = self._engine.relax(1_000)
+        self._last = last
+        self._record(last)
+
+    # -- commands -------------------------------------------------------------------------------------------------------------
+
+    def submit(self, command: Command) -> None:
+        """Ask for something; it takes effect before the next increment. May be called from any thread."""
+        with self._lock:
+            if isinstance(command, Move) and self._pending:
+                newest = self._pending[-1]
+                if isinstance(newest, Move) and newest.handle == command.handle:
+                    self._pending.pop()  # only where the hand is now matters
+            self._pending.append(command)
+
+    def submit_exactly(self, command: Command) -> None:
+        """As ``submit``, but never merged with the command before: for replays."""
+        with self._lock:
+            self._pending.append(command)
+
+    def _take_commands(self) -> None:
+        while True:
+            with self._lock:
+                if not self._pending:
+                    return
+                command = self._pending.popleft()
+            try:
+                self._apply(command)
+            except InputError as error:
+                self._notices = [str(error)]
+                continue
+            self._commands.append((self._finished, command))
+
+    def _apply(self, command: Command) -> None:
+        setup = self._require()
+        match command:
+            case Grab(handle):
+                self._handle(handle)
+                self._held.add(handle)
+                self._script = None
+                self._targets.clear()
+            case Move(handle, x, y):
+                self._handle(handle)
+                if handle in self._held:
+                    self._targets[handle] = (x, y)
+                    self._blocked.discard(handle)
+                    self._notices = []
+            case Release(handle):
+                self._handle(handle)
+                self._held.discard(handle)
+                self._targets.pop(handle, None)
+            case Protocol(on):
+                self._script = 0 if on else None
+                self._targets.clear()
+                self._blocked.clear()
+            case Reset():
+                setup.packing = self._start_packing.copy()
+                setup.world.place(self._start_placement)
+                self._begin(setup)
+            case Change(name, value):
+                self._change(name, value)
+
+    def _change(self, name: str, value: object) -> None:
+        scene, packing, seed, settings = self.scene, self.packing, self.seed, dict(self.settings)
+        if name == "scene":
+            scene = registry.get(str(value))
+            settings = scene.settings()
+        elif name == "packing":
+            packing = scene.check_packing(str(value))
+        elif name == "seed":
+            seed = check_seed(value)
+        else:
+            settings = scene.settings({**settings, name: value})
+        before = self.scene, self.packing, self.seed, self.settings
+        self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
+        try:
+            self.build(self._progress)
+        except InputError:
+            self.scene, self.packing, self.seed, self.settings = before
+            raise
+
+    def _handle(self, name: str) -> Handle:
+        for handle in self._require().handles:
+            if handle.body == name:
+                return handle
+        raise InputError(f"nothing here is called {name!r}; there are: {', '.join(h.body for h in self._require().handles)}")
+
+    # -- running --------------------------------------------------------------------------------------------------------------
+
+    @property
+    def busy(self) -> bool:
+        """True while an increment is being relaxed."""
+        return self._setup is not None and self._engine.busy
+
+    @property
+    def idle(self) -> bool:
+        """True if there is nothing to do: no command waits, no body has to move, and nothing is being relaxed."""
+        if self._setup is None or self._engine.busy or self._pending:
+            return False
+        return self._script is None and not self._wanted()
+
+    @property
+    def finished(self) -> int:
+        """Increments finished since the session began, resets included: the stamp of a log."""
+        return self._finished
+
+    def advance(self, max_iterations: int = 200) -> bool:
+        """One slice of work, at most so many force evaluations. True if it finished an increment. Commands enter in between."""
+        self._require()
+        if not self._engine.busy:
+            self._take_commands()
+            targets = self._next_targets()
+            if not targets:
+                return False
+            self._engine.begin(targets)
+        increment = self._engine.relax(max_iterations)
+        if increment is None:
+            return False
+        self._finished += 1
+        self._last = increment
+        self._after(increment)
+        return True
+
+    def settle(self) -> None:
+        """Let waiting commands take effect without beginning an increment."""
+        if not self._engine.busy:
+            self._take_commands()
+
+    def _next_targets(self) -> dict[str, Point]:
+        if self._script is not None:
+            targets = self.scene.drive(self._require(), self.settings, self._script)
+            if targets is not None:
+                self._script += 1
+                self._targets = dict(targets)
+                return dict(targets)
+            self._script = None
+            self._targets.clear()
+        return self._wanted()
+
+    def _wanted(self) -> dict[str, Point]:
+        """Held bodies that are not yet where the hand wants them, unless something stops them."""
+        wanted = {}
+        for name, target in self._targets.items():
+            body = self._require().world[name]
+            way = np.array(target) - body.position
+            distance = abs(float(np.dot(way, body.axis))) if body.axis is not None else float(np.hypot(*way))
+            if distance > ARRIVED and name not in self._blocked:
+                wanted[name] = target
+        return wanted
+
+    def _after(self, increment: Increment) -> None:
+        setup = self._require()
+        self._notices = []
+        for name, why in increment.stopped.items():
+            moved = math.hypot(*increment.moved[name])
+            label = self._handle(name).label
+            if moved < STUCK * setup.solver.step:
+                self._blocked.add(name)
+            if why == "force limit":
+                self._notices.append(f"the hand is not stronger than {setup.world[name].force_limit:g} k R: {label} stopped")
+            elif why == "end of travel":
+                self._notices.append(f"{label}: end of travel")
+            elif moved < STUCK * setup.solver.step:
+                self._notices.append(f"{label}: stopped by the wall")
+        if increment.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
+            self._blocked.update(increment.moved)
+            self._script = None
+            what = "a grain was squeezed flat" if increment.report.reason is StopReason.COLLAPSED else "the numbers blew up"
+            self._notices.append(f"{what}: back to the state before this step. Draw back, or reset")
+        self._remove_those_gone()
+        moved = increment.moved.get(self._drive.body, (0.0, 0.0))
+        self._follow(np.array(moved))
+        self._record(increment)
+        self._watch_for_clog()
+
+    def _remove_those_gone(self) -> None:
+        setup = self._require()
+        if setup.outlet is None:
+            return
+        gone = setup.outlet.gone(self._engine.packing)
+        if gone.any():
+            self._out += int(gone.sum())
+            self._engine.remove(gone)
+            setup.packing = self._engine.packing
+
+    def _follow(self, moved: np.ndarray) -> None:
+        """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
+        body = self._require().world[self._drive.body]
+        if body.axis is not None:
+            self._stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
+        else:
+            length = float(np.hypot(*moved))
+            self._stroke += length
+            if length > 0.0:
+                self._direction = moved / length
+
+    def _record(self, increment: Increment) -> None:
+        setup = self._require()
+        fx, fy = (float(v) for v in increment.reactions[setup.world.index(self._drive.body), :2])
+        report = increment.report
+        self.history.append(
+            Row(
+                increment=len(self.history),
+                stroke=self._stroke,
+                fx=fx,
+                fy=fy,
+                grains_out=self._out,
+                energy=report.energy,
+                residual=report.residual,
+                iterations=report.iterations,
+                stop_reason=str(report.reason),
+                resisting=-float(fx * self._direction[0] + fy * self._direction[1]) + 0.0,
+            )
+        )
+
+    def _watch_for_clog(self) -> None:
+        """Clogged: the force rises over a stroke of one grain diameter while nothing leaves."""
+        if self._require().outlet is None:
+            return
+        rows = self.history
+        if len(rows) > 1 and rows[len(rows) - 1].grains_out > rows[len(rows) - 2].grains_out:
+            self._clear_since = self._stroke
+        since = self._stroke - self._clear_since
+        if since >= 2.0:
+            start = next(row for row in (rows[k] for k in range(len(rows))) if row.stroke >= self._clear_since)
+            if rows[len(rows) - 1].resisting > start.resisting and rows[len(rows) - 1].resisting > 0.0:
+                self._notices.append(f"clogged: {since / 2.0:.1f} diameters of stroke, nothing left")
+
+    # -- what can be seen -----------------------------------------------------------------------------------------------------
+
+    def frame(self) -> Frame:
+        """A snapshot that shares nothing with the session."""
+        setup = self._require()
+        packing = setup.packing
+        report = self._engine.progress()
+        last = self._last.report
+        shown = last if report is None else report
+        state = packing.state.copy()
+        return Frame(
+            scene=self.scene.name,
+            title=self.scene.title,
+            packing=self.packing,
+            seed=self.seed,
+            increment=len(self.history) - 1,
+            x=state[0],
+            y=state[1],
+            p=state[2],
+            q1=state[3],
+            q2=state[4],
+            rest_radius=packing.rest_radius.copy(),
+            poisson_ratio=packing.poisson_ratio.copy(),
+            contacts=self._contact_lines(packing),
+            bodies=tuple(_shape(body) for body in setup.world.bodies),
+            handles=tuple(self._handle_state(handle) for handle in setup.handles),
+            bounds=setup.bounds,
+            stroke=self._stroke,
+            grains_out=self._out,
+            energy=last.energy,
+            residual=last.residual,
+            tolerance=setup.solver.tolerance,
+            iterations=shown.iterations,
+            stop_reason=str(last.reason),
+            busy=self._engine.busy,
+            protocol=self._script is not None,
+            notices=tuple(self._notices),
+            curve_stroke=self.history.column("stroke"),
+            curve_force=self.history.column("resisting"),
+            curve_label=f"force on the {self._drive.label} [k R]",
+        )
+
+    def _contact_lines(self, packing: Packing) -> Contacts:
+        pairs, bodies = self._last.grain_contacts, self._last.body_contacts
+        if self._out:  # some of those grains may have left since: measure again
+            pairs, bodies = self._engine.contacts()
+        primitives, _ = self._require().world.primitives()
+        x0 = np.concatenate([packing.x[pairs.i], packing.x[bodies.grain]])
+        y0 = np.concatenate([packing.y[pairs.i], packing.y[bodies.grain]])
+        # On a disc the force acts at its centre; the line ends where grain and disc touch.
+        disc = primitives[bodies.primitive, 0] == DISC
+        length = np.hypot(packing.x[bodies.grain] - bodies.x, packing.y[bodies.grain] - bodies.y)
+        share = np.where(disc, primitives[bodies.primitive, 7] / np.maximum(length, 1e-12), 0.0)
+        end_x = bodies.x + share * (packing.x[bodies.grain] - bodies.x)
+        end_y = bodies.y + share * (packing.y[bodies.grain] - bodies.y)
+        return Contacts(
+            x0=x0,
+            y0=y0,
+            x1=np.concatenate([packing.x[pairs.i] + pairs.dx, end_x]),
+            y1=np.concatenate([packing.y[pairs.i] + pairs.dy, end_y]),
+            force=np.concatenate([pairs.normal_force, bodies.normal_force]),
+            rigid=np.concatenate([np.zeros(len(pairs.i), dtype=bool), np.ones(len(bodies.grain), dtype=bool)]),
+        )
+
+    def _handle_state(self, handle: Handle) -> HandleState:
+        setup = self._require()
+        body = setup.world[handle.body]
+        push = self._last.reactions[setup.world.index(handle.body)]
+        return HandleState(
+            name=handle.body,
+            label=handle.label,
+            x=body.position[0],
+            y=body.position[1],
+            target=self._targets.get(handle.body),
+            fx=-float(push[0]),
+            fy=-float(push[1]),
+            radius=handle.radius,
+            axis=body.axis,
+        )
+
+    def state_hash(self) -> str:
+        """Hash of every bit of the packing and of where the bodies are."""
+        setup = self._require()
+        return hashlib.sha256(setup.packing.hash().encode() + setup.world.placement().tobytes()).hexdigest()
+
+    def checks(self) -> list[Check]:
+        """The scene's claims about this run."""
+        rows = self.history
+        reasons = rows.column("stop_reason")
+        track = Track(
+            stroke=rows.column("stroke"),
+            force=rows.column("resisting"),
+            grains_out=rows.column("grains_out"),
+            residual=rows.column("residual"),
+            converged=reasons == str(StopReason.CONVERGED),
+            initial_grains=self._initial,
+        )
+        return self.scene.checks(self._require(), self.settings, track)
+
+    # -- logs -----------------------------------------------------------------------------------------------------------------
+
+    def log(self) -> Log:
+        """The run so far. Raises RuntimeError in the middle of an increment: finish it first."""
+        if self.busy:
+            raise RuntimeError("finish the increment before taking the log")
+        scene, packing, seed, settings = self._first
+        return Log(scene, packing, seed, settings, tuple(self._commands), self._finished, self.state_hash())
+
+    def write_log(self, path: str) -> None:
+        """Write the log whole or not at all."""
+        write_log_file(path, self.log())
+
+    def _require(self) -> Setup:
+        if self._setup is None:
+            raise RuntimeError("build the session first")
+        return self._setup
+
+
+def _shape(body: RigidBody) -> BodyShape:
+    """A body's shapes in the world, for drawing."""
+    discs = [(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs]
+    segments = [(*body.to_world([(x0, y0), (x1, y1)]).ravel(), radius) for x0, y0, x1, y1, radius in body.segments]
+    return BodyShape(
+        name=body.name,
+        role=body.role,
+        discs=np.array(discs, dtype=np.float64).reshape(-1, 3),
+        segments=np.array(segments, dtype=np.float64).reshape(-1, 5),
+        polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
+    )
+
+
+def check_seed(seed: object) -> int:
+    """A seed is a whole number from 0 to 2⁶³ − 1. Raises InputError otherwise."""
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**63:
+        raise InputError(f"the seed must be 0 or a positive whole number below 2^63, not {seed!r}")
+    return seed
+
+
+def replay(log: Log, progress: Progress | None = None, slice_iterations: int = 400) -> Iterator[Session]:
+    """Run a log again; yields the session built, and after each increment. Raises InputError if the log does not fit the scene."""
+    session = Session(log.scene, log.packing, log.seed, log.settings)
+    session.build(progress)
+    yield session
+    waiting = deque(log.commands)
+    while True:
+        while waiting and waiting[0][0] == session.finished:
+            session.submit_exactly(waiting.popleft()[1])
+        if session.finished >= log.end:
+            session.settle()
+            return
+        while not session.advance(slice_iterations):
+            if session.idle:
+                raise InputError(f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}")
+        yield session

@@ -1,0 +1,62 @@
+"""A number that a person may set: its unit, its range and one line of help."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from core.errors import InputError
+
+Value = float | int | bool
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One setting of a scene. Its type is that of ``default``; ``low`` and ``high`` are allowed values."""
+
+    name: str
+    default: Value
+    unit: str
+    low: Value
+    high: Value
+    help: str
+
+    @property
+    def kind(self) -> str:
+        """"switch", "whole number" or "number"."""
+        if isinstance(self.default, bool):
+            return "switch"
+        return "whole number" if isinstance(self.default, int) else "number"
+
+    def check(self, value: object) -> Value:
+        """``value`` as this parameter's type. Raises InputError if it has another type or is out of range."""
+        if isinstance(self.default, bool):
+            if not isinstance(value, bool):
+                raise InputError(f"{self.name} is a switch: give true or false, not {value!r}")
+            return value
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise InputError(f"{self.name} must be a {self.kind}, not {value!r}")
+        if isinstance(self.default, int):
+            if value != int(value):
+                raise InputError(f"{self.name} must be a whole number, not {value!r}")
+            value = int(value)
+        else:
+            value = float(value)
+        if not self.low <= value <= self.high:
+            unit = f" {self.unit}" if self.unit else ""
+            raise InputError(f"{self.name} must lie between {self.low:g} and {self.high:g}{unit}; {value:g} does not")
+        return value
+
+    def parse(self, text: str) -> Value:
+        """The value that a person typed. Raises InputError as ``check`` does."""
+        plain = text.strip().lower()
+        if isinstance(self.default, bool):
+            words = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+            if plain not in words:
+                raise InputError(f"{self.name} is a switch: give true or false, not {text!r}")
+            return words[plain]
+        try:
+            number = float(plain)
+        except ValueError:
+            raise InputError(f"{self.name} must be a {self.kind}, not {text!r}") from None
+        return self.check(number)

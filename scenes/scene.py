@@ -1,0 +1,188 @@
+"""What a scene is: parameters, a way to build it, handles to drag, a scripted drive, and checks that must hold.
+
+The same scene serves the window, films, tests and studies. It is a list of ingredients: what it does not name, does not exist.
+"""
+
+from __future__ import annotations
+
+import difflib
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from core import observables
+from core.errors import InputError
+from core.generate import KINDS, Recipe, inside
+from core.packing import Packing
+from core.quasistatic import Settings
+from core.rigid import Point, RigidWorld
+from scenes.parameter import Parameter, Value
+
+Values = Mapping[str, Value]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Handle:
+    """A body that a person can drag. ``direction`` is where the scripted drive takes it; ``radius`` how near to grab it [R]."""
+
+    body: str
+    label: str
+    direction: Point
+    radius: float
+
+
+@dataclass(frozen=True)
+class Outlet:
+    """Grains whose centre has come below ``y`` [R] have left; ``opening`` [R] is the width of the orifice."""
+
+    y: float
+    opening: float
+
+    def gone(self, packing: Packing) -> np.ndarray:
+        """True for the grains that have left, (N,)."""
+        return packing.y < self.y
+
+
+@dataclass
+class Setup:
+    """A scene that is built: the packing, the bodies, how to relax, and what a person can do with it."""
+
+    packing: Packing
+    world: RigidWorld
+    solver: Settings
+    handles: tuple[Handle, ...]
+    bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
+    outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
+    outlet: Outlet | None = None
+
+
+@dataclass(frozen=True)
+class Track:
+    """What the checks of a scene look at: the curve so far. Arrays (M,), one entry an increment."""
+
+    stroke: np.ndarray  # [R]
+    force: np.ndarray  # that resists the drive [k R]
+    grains_out: np.ndarray
+    residual: np.ndarray
+    converged: np.ndarray
+    initial_grains: int
+
+
+@dataclass(frozen=True)
+class Check:
+    """A claim about a run. ``holds`` is None where the run was too short to tell."""
+
+    name: str
+    holds: bool | None
+    measured: str
+
+
+class Scene(ABC):
+    """One scene. Subclasses set the class attributes and write ``build`` and ``drive``."""
+
+    name: ClassVar[str]
+    title: ClassVar[str]
+    question: ClassVar[str]
+    about: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    default_steps: ClassVar[int]
+    packings: ClassVar[tuple[str, ...]] = KINDS
+
+    def settings(self, overrides: Mapping[str, object] | None = None) -> dict[str, Value]:
+        """All parameters, defaults unless overridden (by values or by typed text). Raises InputError for a bad name or value."""
+        values: dict[str, Value] = {p.name: p.default for p in self.parameters}
+        by_name = {p.name: p for p in self.parameters}
+        for name, value in (overrides or {}).items():
+            if name not in by_name:
+                close = difflib.get_close_matches(name, by_name, n=1)
+                hint = f"did you mean {close[0]}?" if close else f"there are: {', '.join(by_name)}"
+                raise InputError(f"scene {self.name} has no parameter {name!r}; {hint}")
+            values[name] = by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
+        return values
+
+    def check_packing(self, packing: str) -> str:
+        """``packing`` if the scene knows it. Raises InputError otherwise."""
+        if packing not in self.packings:
+            raise InputError(f"unknown packing {packing!r}: choose {', '.join(self.packings)}")
+        return packing
+
+    @abstractmethod
+    def build(self, values: Values, packing: str, seed: int, progress: Progress | None = None) -> Setup:
+        """Set the scene up. ``progress`` is told the share done. Raises InputError if the parameters do not go together."""
+
+    @abstractmethod
+    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+        """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end."""
+
+    def checks(self, setup: Setup, values: Values, track: Track) -> list[Check]:
+        """Claims that must hold for any run of any scene; subclasses add their own."""
+        return [_grains_kept(setup, track), _nothing_inside(setup), _converged(track)]
+
+
+MATERIAL = (
+    Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
+    Parameter("regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains"),
+    Parameter("auxetic_poisson_ratio", -0.8, "", -0.99, -0.01, "Poisson's ratio of auxetic grains"),
+    Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "stiffness of a contact over that of a grain: higher is harder and slower"),
+)
+SOLVER = (
+    Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment"),
+    Parameter("tolerance", 1e-2, "", 1e-8, 0.3, "largest residual force over mean contact force at the end of an increment"),
+    Parameter("max_iterations", 8000, "", 10, 1_000_000, "force evaluations after which an increment ends unconverged, and says so"),
+)
+
+
+def recipe(values: Values, packing: str) -> Recipe:
+    """The grains that ``values`` and the kind of packing ask for."""
+    return Recipe(
+        kind=packing,
+        auxetic_fraction=float(values["auxetic_fraction"]),
+        regular_poisson_ratio=float(values["regular_poisson_ratio"]),
+        auxetic_poisson_ratio=float(values["auxetic_poisson_ratio"]),
+        contact_stiffness=float(values["contact_stiffness"]),
+    )
+
+
+def solver(values: Values) -> Settings:
+    """How carefully ``values`` ask to relax."""
+    return Settings(
+        step=float(values["step"]), tolerance=float(values["tolerance"]), max_iterations=int(values["max_iterations"])
+    )
+
+
+def _grains_kept(setup: Setup, track: Track) -> Check:
+    packing = setup.packing
+    out = int(track.grains_out[-1]) if len(track.grains_out) else 0
+    counted = len(packing) + out == track.initial_grains
+    astray = ~inside(setup.outline, packing.x, packing.y)
+    if setup.outlet is not None:
+        lowest = min(y for _, y in setup.outline)
+        astray &= packing.y > lowest + 1e-9
+    stray = int(astray.sum())
+    return Check("no grain is lost and none has passed a wall", counted and stray == 0, f"{out} left by the outlet, {stray} astray")
+
+
+def _nothing_inside(setup: Setup) -> Check:
+    packing = setup.packing
+    worst = 0.0
+    primitives, _ = setup.world.primitives()
+    contacts = observables.body_contacts(packing, primitives)
+    if len(contacts.grain):
+        worst = float(np.max(contacts.overlap / packing.rest_radius[contacts.grain]))
+    return Check("no grain sinks into a body by half its radius", worst < 0.5, f"deepest overlap {worst:.3f} of a radius")
+
+
+def _converged(track: Track) -> Check:
+    if not len(track.converged):
+        return Check("at least nine of ten increments converge", None, "nothing has moved yet")
+    share = float(np.mean(track.converged))
+    return Check("at least nine of ten increments converge", share >= 0.9, f"{share:.1%} of {len(track.converged)} increments")
+
+
+def mean(values: Sequence[float] | np.ndarray) -> float:
+    """Mean, and 0 of nothing."""
+    return float(np.mean(values)) if len(values) else 0.0
