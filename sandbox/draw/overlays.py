@@ -11,7 +11,7 @@ import pygame
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.numbers import decimals_for, number
-from sandbox.draw.painter import Painter
+from sandbox.draw.painter import Painter, floats
 from sandbox.draw.text import HEADING
 from sandbox.draw.theme import HAND, magnitude_colours, mix
 from sandbox.draw.words import FORCE_UNIT
@@ -28,7 +28,7 @@ def draw_chains(
     painter: Painter, rect: pygame.Rect, camera: Camera, contacts: Contacts, top: float
 ) -> None:
     """A line along every contact: width by the root of the force, colour by the force."""
-    force = np.ascontiguousarray(contacts.force, dtype=np.float64)
+    force = floats(contacts.force)
     if not force.size:
         return
     with np.errstate(invalid="ignore"):
@@ -37,8 +37,7 @@ def draw_chains(
     widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
     order = np.argsort(share, kind="stable")  # the strongest on top
     ends = tuple(
-        np.ascontiguousarray(part[order], dtype=np.float64)
-        for part in (contacts.x0, contacts.y0, contacts.x1, contacts.y1)
+        floats(part[order]) for part in (contacts.x0, contacts.y0, contacts.x1, contacts.y1)
     )
     raster.draw_lines(
         painter.canvas(rect, camera.transform),

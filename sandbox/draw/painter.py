@@ -25,6 +25,11 @@ Anchor = Literal["left", "centre", "right"]
 NO_EDGE = 0.0
 
 
+def floats(values: Floats) -> Floats:
+    """The values as the kernels were compiled for: float64, contiguous, writable."""
+    return np.require(values, dtype=np.float64, requirements=["C", "A", "W"])
+
+
 class Painter:
     """Draws into one 32-bit surface in pixel coordinates."""
 
@@ -89,7 +94,7 @@ class Painter:
         """A convex outline inflated by ``radius`` [px]."""
         raster.draw_hull(
             self.canvas(clip, to_screen),
-            np.ascontiguousarray(corners, dtype=np.float64),
+            floats(corners),
             float(radius),
             int(colour),
             int(colour if edge is None else edge),
@@ -143,7 +148,7 @@ class Painter:
         clip: pygame.Rect | None = None,
     ) -> None:
         """Straight lines (x0, y0, x1, y1) of one look."""
-        x0, y0, x1, y1 = (np.asarray(part, dtype=np.float64) for part in ends)
+        x0, y0, x1, y1 = (floats(part) for part in ends)
         count = x0.shape[0]
         raster.draw_lines(
             self.canvas(clip),

@@ -83,13 +83,14 @@ class Renderer:
         frame: Frame,
         *,
         hand: Hand | None = None,
-        fps: float | None = None,
+        rate: str = "",
         paused: bool = False,
         notices: tuple[str, ...] = (),
     ) -> pygame.Surface:
         """Draw a frame; returns the renderer's surface, which the next call overwrites.
 
-        ``notices`` are the window's own, shown with the frame's.
+        ``rate`` is what the status line says about frames a second; ``notices`` are the window's
+        own, shown with the frame's.
         """
         painter = self.painter()
         places = self.layout
@@ -107,7 +108,7 @@ class Renderer:
         draw_header(painter, places.header, frame, chain_top)
         curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
         draw_plot(painter, places.plot, [curve], frame.curve_label)
-        draw_status(painter, places.status, frame, fps=fps, paused=paused)
+        draw_status(painter, places.status, frame, rate=rate, paused=paused)
         self._draw_notices(painter, (*frame.notices, *notices))
         painter.flush()
         return self.surface

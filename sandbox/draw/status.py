@@ -61,7 +61,7 @@ def _width(painter: Painter, item: _Item) -> int:
 
 
 def draw_status(
-    painter: Painter, rect: pygame.Rect, frame: Frame, *, fps: float | None, paused: bool
+    painter: Painter, rect: pygame.Rect, frame: Frame, *, rate: str, paused: bool
 ) -> None:
     """Scene · packing · seed · increment, the lamp with its words, frames a second."""
     scale, theme, type_ = painter.scale, painter.theme, painter.type
@@ -89,10 +89,9 @@ def draw_status(
         items.append(_Item(words.DRIVE, 2))
     if paused:
         items.append(_Item(words.PAUSED, 6))
-    rate = _Item("" if fps is None else words.RATE.format(fps=fps), 0, "")
     room = rect.width - 2 * pad
     wanted = lamp_space + type_.width(state.words, BODY)
-    rate_width = (_width(painter, rate) + gap) if rate.text else 0
+    rate_width = type_.width(rate, BODY) + gap if rate else 0
     while items and sum(_width(painter, item) + gap for item in items) + wanted + rate_width > room:
         if rate_width:
             rate_width = 0
@@ -119,7 +118,7 @@ def draw_status(
     whole = type_.width(state.words, BODY) <= free
     painter.text(state.words if whole else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
-        painter.text(rate.text, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
+        painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
 
 
 def draw_header(painter: Painter, rect: pygame.Rect, frame: Frame, chain_top: float | None) -> None:

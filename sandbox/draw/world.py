@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
-from sandbox.draw.painter import Painter
+from sandbox.draw.painter import Painter, floats
 from sandbox.draw.theme import AUXETIC, REGULAR, Theme, mix
 from sandbox.frame import BodyShape, Frame
 
@@ -45,10 +45,7 @@ def draw_grains(
 ) -> None:
     """All grains by kind, auxetic ones with their mark."""
     canvas = painter.canvas(rect, camera.transform)
-    grains = tuple(
-        np.ascontiguousarray(part, dtype=np.float64)
-        for part in (frame.x, frame.y, frame.p, frame.q1, frame.q2)
-    )
+    grains = tuple(floats(part) for part in (frame.x, frame.y, frame.p, frame.q1, frame.q2))
     auxetic = frame.auxetic
     regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, faded)
     fill = np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill))
@@ -59,7 +56,7 @@ def draw_grains(
         raster.draw_bow_ties(
             canvas,
             grains,
-            np.ascontiguousarray(turn, dtype=np.float64),
+            floats(turn),
             mark_openness(frame.p, frame.q1, frame.q2, frame.rest_radius),
             auxetic,
             painter.theme.ground,

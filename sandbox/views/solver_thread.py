@@ -26,7 +26,6 @@ SLICE = 200  # iterations of the minimiser between two looks at the mailbox
 PICTURE = 1.0 / 90.0  # pictures of an unfinished increment are taken no more often than this [s]
 
 Progress = Callable[[str, float], None]
-Prepare = Callable[[Progress], None]
 Phase = Literal["building", "running", "failed", "stopped"]
 
 
@@ -45,6 +44,10 @@ class SessionLike(Protocol):
     @property
     def idle(self) -> bool:
         """Is there nothing to do?"""
+
+    @property
+    def busy(self) -> bool:
+        """Is an increment being relaxed?"""
 
     def frame(self) -> Frame:
         """A picture of the state."""
@@ -67,23 +70,16 @@ class _Stopped(Exception):
 
 
 class SolverThread:
-    """Runs a session until stopped.
+    """Runs a session until stopped."""
 
-    ``prepare`` runs first, in the thread: it is where the window compiles its own kernels.
-    """
-
-    def __init__(
-        self, session: SessionLike, prepare: Prepare | None = None, *, paused: bool = False
-    ) -> None:
+    def __init__(self, session: SessionLike, *, paused: bool = False) -> None:
         self._session = session
-        self._prepare = prepare
         self._mail: list[Command] = []
         self._paused = paused
         self._steps = 0
         self._stop = False
         self._changed = threading.Condition()
         self._snapshot = Snapshot("building")
-        self._relaxing = False  # inside an increment
         self._pictured = 0.0
         # A daemon, because a compilation cannot be broken off: the process may end without it.
         self._thread = threading.Thread(target=self._run, name="solver", daemon=True)
@@ -145,12 +141,11 @@ class SolverThread:
 
     def _run(self) -> None:
         try:
-            if self._prepare is not None:
-                self._prepare(self._report)
             self._session.build(self._report)
             self._publish("running")
             while self._wait():
                 self._work()
+            self._finish()
         except _Stopped:
             pass
         except InputError as error:
@@ -186,8 +181,16 @@ class SolverThread:
                 self._changed.wait()
             return not self._stop
 
+    def _finish(self) -> None:
+        """Bring the increment at work to its end if that is soon: a log ends between increments."""
+        patience = time.perf_counter() + 2.0
+        while self._session.busy and time.perf_counter() < patience:
+            self._session.advance(SLICE)
+
     def _due(self) -> bool:
-        if self._relaxing or any(isinstance(command, (Reset, Change)) for command in self._mail):
+        if self._session.busy or any(
+            isinstance(command, (Reset, Change)) for command in self._mail
+        ):
             return True
         if self._paused and not self._steps:
             return False
@@ -205,9 +208,8 @@ class SolverThread:
                 self._report("", math.nan)  # it is built anew, which takes a moment
             self._session.submit(command)
         finished = self._session.advance(SLICE)
-        self._relaxing = not finished and not self._session.idle
         if finished:
             with self._changed:
                 self._steps = max(self._steps - 1, 0)
-        if not self._relaxing or time.perf_counter() - self._pictured >= PICTURE:
+        if not self._session.busy or time.perf_counter() - self._pictured >= PICTURE:
             self._publish("running")

@@ -1,0 +1,82 @@
+"""Which key means what. Letters and signs go by what is printed on the key, in any layout."""
+
+from __future__ import annotations
+
+import enum
+
+import pygame
+
+
+class Action(enum.Enum):
+    """What a key asks for."""
+
+    PAUSE = enum.auto()
+    STEP = enum.auto()
+    RESET = enum.auto()
+    PACKING_1 = enum.auto()
+    PACKING_2 = enum.auto()
+    PACKING_3 = enum.auto()
+    NEXT_PACKING = enum.auto()
+    NEW_SEED = enum.auto()
+    MENU = enum.auto()
+    PROTOCOL = enum.auto()
+    CHAINS = enum.auto()
+    HELP = enum.auto()
+    THEME = enum.auto()
+    LARGER = enum.auto()
+    SMALLER = enum.auto()
+    SCREENSHOT = enum.auto()
+    BACK = enum.auto()
+    ENTER = enum.auto()
+    LEFT = enum.auto()
+    RIGHT = enum.auto()
+    UP = enum.auto()
+    DOWN = enum.auto()
+
+
+PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
+
+_SIGNS = {
+    " ": Action.PAUSE,
+    "s": Action.STEP,
+    "r": Action.RESET,
+    "1": Action.PACKING_1,
+    "2": Action.PACKING_2,
+    "3": Action.PACKING_3,
+    "p": Action.NEXT_PACKING,
+    "n": Action.NEW_SEED,
+    "m": Action.MENU,
+    "a": Action.PROTOCOL,
+    "f": Action.CHAINS,
+    "h": Action.HELP,
+    "?": Action.HELP,
+    "t": Action.THEME,
+    "+": Action.LARGER,
+    "=": Action.LARGER,
+    "-": Action.SMALLER,
+}
+
+_KEYS = {
+    pygame.K_TAB: Action.MENU,
+    pygame.K_F1: Action.HELP,
+    pygame.K_F12: Action.SCREENSHOT,
+    pygame.K_ESCAPE: Action.BACK,
+    pygame.K_RETURN: Action.ENTER,
+    pygame.K_KP_ENTER: Action.ENTER,
+    pygame.K_LEFT: Action.LEFT,
+    pygame.K_RIGHT: Action.RIGHT,
+    pygame.K_UP: Action.UP,
+    pygame.K_DOWN: Action.DOWN,
+    pygame.K_KP_PLUS: Action.LARGER,
+    pygame.K_KP_MINUS: Action.SMALLER,
+}
+
+
+def action_of(event: pygame.event.Event) -> Action | None:
+    """What a KEYDOWN event asks for, if anything."""
+    if event.key in _KEYS:
+        return _KEYS[event.key]
+    if getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META):
+        return None
+    sign = getattr(event, "unicode", "") or (chr(event.key) if 0 < event.key < 128 else "")
+    return _SIGNS.get(sign.lower())
