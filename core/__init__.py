@@ -1,4 +1,5 @@
 """The physics: deformable elliptical grains, relaxed quasistatically.
 
-Usable alone from a notebook; imports neither a window nor a video library. Symbols, units and equations: MODEL.md beside this file.
+Usable alone from a notebook; imports neither a window nor a video library. Symbols, units and
+equations: MODEL.md beside this file.
 """

@@ -21,7 +21,9 @@ import numpy as np
 
 from core.jit import kernel
 
-COINCIDENT = 1e-290  # [R²] keeps 1/r finite for coincident centres; far below rounding for all others
+COINCIDENT = (
+    1e-290  # [R²] keeps 1/r finite for coincident centres; far below rounding for all others
+)
 
 
 @kernel(noalias=True)
@@ -72,7 +74,7 @@ def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
         inverse_hj = 1.0 / math.sqrt(hj2)
         overlap = hi2 * inverse_hi + hj2 * inverse_hj - r2 * inverse
         # A plain select, true also for nan, so that nan goes on meaning nan.
-        overlap = 0.0 if overlap <= 0.0 else overlap
+        overlap = max(0.0, overlap)
         f = stiffness[i] * overlap
         energy += 0.25 * f * overlap  # each pair is met twice
         fi = f * inverse_hi
@@ -116,7 +118,7 @@ def add_contact_forces(state, support, force, count, offset, neighbor, stiffness
 
 @kernel
 def grain_overlap(state, support, i, j, box):
-    """One pair by itself: (overlap, dx, dy, c2, s2, h_i, h_j), d from i to j. For observables and tests, not for the inner loop."""
+    """One pair by itself: (overlap, dx, dy, c2, s2, h_i, h_j), d from i to j. Not for the inner loop."""
     dx = state[0, j] - state[0, i]
     dy = state[1, j] - state[1, i]
     if box is not None:

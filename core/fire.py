@@ -23,7 +23,7 @@ from core.contacts import add_contact_forces, grain_overlap, prepare
 from core.elasticity import finish
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
-from core.rigid_contacts import RigidTerms, add_rigid_forces, find_rigid_pairs, touch
+from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, touch
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
 
@@ -36,7 +36,22 @@ HALF_STEP_BACK = True
 SCALE_EVERY = 50  # iterations between looks at the mean contact force
 
 # Slots of Minimizer.control.
-DT, ALPHA, DOWNHILL, KEEP, PUSH, MOVED, SCALE, COUNTDOWN, ENERGY, RESIDUAL, LISTED, PENDING, FASTEST, START_ENERGY = range(14)
+(
+    DT,
+    ALPHA,
+    DOWNHILL,
+    KEEP,
+    PUSH,
+    MOVED,
+    SCALE,
+    COUNTDOWN,
+    ENERGY,
+    RESIDUAL,
+    LISTED,
+    PENDING,
+    FASTEST,
+    START_ENERGY,
+) = range(14)
 
 
 class Grains(NamedTuple):
@@ -91,11 +106,11 @@ def drift(state, velocity, dt):
 
 @kernel
 def largest(bits):
-    """max |value| from the bits of float64 numbers (n,) int64: integers compare as the numbers do, nan above all, and vectorise."""
+    """max |value| from the bits (n,) int64 of float64: integers order as the numbers do, nan above all, and vectorise."""
     most = np.int64(0)
     for i in range(bits.shape[0]):
         magnitude = bits[i] & np.int64(0x7FFFFFFFFFFFFFFF)
-        most = magnitude if magnitude > most else most
+        most = max(most, magnitude)
     return most
 
 
@@ -135,10 +150,10 @@ def farthest(state, reference):
 @kernel
 def collapsed(state):
     """True if some grain's shorter semi-axis is not greater than 0 (also when it is nan)."""
+    flat = False
     for i in range(state.shape[1]):
-        if not state[2, i] > math.sqrt(state[3, i] ** 2 + state[4, i] ** 2):
-            return True
-    return False
+        flat |= not state[2, i] > math.sqrt(state[3, i] ** 2 + state[4, i] ** 2)
+    return flat
 
 
 @kernel
@@ -169,9 +184,8 @@ def relist(m, box, rigid, skin):
     permute(m.grains.area_stiffness, order, m.scratch)
     permute(m.grains.shape_stiffness, order, m.scratch)
     permute(m.identity, order, m.scratch_identity)
-    if rigid is not None:
-        if not find_rigid_pairs(m.state, rigid, 0.5 * skin):
-            return RIGID_FULL
+    if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin):
+        return RIGID_FULL
     m.reference[:] = m.state
     m.control[MOVED] = 0.0
     m.control[LISTED] = 1.0
@@ -184,14 +198,41 @@ def evaluate(m, box, rigid):
     state = m.state
     force = m.force
     prepare(
-        state[2], state[3], state[4], m.support[0], m.support[1], m.support[2], force[0], force[1], force[2], force[3], force[4]
+        state[2],
+        state[3],
+        state[4],
+        m.support[0],
+        m.support[1],
+        m.support[2],
+        force[0],
+        force[1],
+        force[2],
+        force[3],
+        force[4],
     )
-    energy = add_contact_forces(state, m.support, force, m.lists.count, m.lists.offset, m.lists.neighbor, m.lists.stiffness, box)
+    energy = add_contact_forces(
+        state,
+        m.support,
+        force,
+        m.lists.width,
+        m.lists.offset,
+        m.lists.neighbor,
+        m.lists.stiffness,
+        box,
+    )
     if rigid is not None:
         energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid)
     grains = m.grains
     energy += finish(
-        state[2], state[3], state[4], grains.rest_area, grains.area_stiffness, grains.shape_stiffness, force[2], force[3], force[4]
+        state[2],
+        state[3],
+        state[4],
+        grains.rest_area,
+        grains.area_stiffness,
+        grains.shape_stiffness,
+        force[2],
+        force[3],
+        force[4],
     )
     return energy
 
@@ -201,7 +242,7 @@ def mean_contact_force(m, box, rigid):
     """Mean normal force of all contacts that carry one [k R]; 0 where there is none."""
     total = 0.0
     contacts = 0.0
-    count = m.lists.count
+    count = m.lists.width
     for t in range(count.shape[0]):
         first = m.lists.offset[t]
         for i in range(count[t]):
@@ -258,6 +299,8 @@ def run(m, box, rigid, limits, max_iterations):
             return LISTS_STALE, iteration
         control[PENDING] = 0.0
         control[ENERGY] = evaluate(m, box, rigid)
+        if np.isnan(control[START_ENERGY]):
+            control[START_ENERGY] = control[ENERGY]
         power, force_square, speed_square = second_kick(velocity, force, inverse_mass, 0.5 * dt)
         bits[FASTEST] = largest(force.view(np.int64))
         largest_force = control[FASTEST]
@@ -286,7 +329,11 @@ def run(m, box, rigid, limits, max_iterations):
             control[DOWNHILL] = 0.0
             control[ALPHA] = ALPHA_START
             if HALF_STEP_BACK:
-                drift(state, velocity, -0.5 * dt)
+                bits[FASTEST] = largest(velocity.view(np.int64))
+                fastest = control[FASTEST]
+                back = 0.5 * dt if 0.5 * fastest * dt <= limits.clamp else limits.clamp / fastest
+                drift(state, velocity, -back)
+                control[MOVED] += 4.0 * back * fastest
             dt = max(dt * DT_SHRINK, DT_SHRINK_FLOOR * limits.dt_max)
             control[KEEP] = 0.0
             mix = 0.0

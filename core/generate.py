@@ -26,7 +26,9 @@ Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 SIZE_RATIO = 1.4
-PLACED_FRACTION = 0.38  # packing fraction of the random placement; random addition of discs saturates at 0.547
+PLACED_FRACTION = (
+    0.38  # packing fraction of the random placement; random addition of discs saturates at 0.547
+)
 GROWTH = 0.02  # largest relative growth of the radii between two relaxations
 ROUGH, FINE = 1e-1, 1e-3  # tolerances while growing, and at the end
 KINDS = ("regular", "auxetic", "mixed")
@@ -66,7 +68,9 @@ class Recipe:
         radius[:small] = 1.0 / self.size_ratio
         share = {"regular": 0.0, "auxetic": 1.0, "mixed": self.auxetic_fraction}[self.kind]
         # Counting up by ``share`` spreads the auxetic grains evenly over both sizes.
-        steps = np.floor(np.arange(1, count + 1) * share + 1e-9) - np.floor(np.arange(count) * share + 1e-9)
+        steps = np.floor(np.arange(1, count + 1) * share + 1e-9) - np.floor(
+            np.arange(count) * share + 1e-9
+        )
         nu = np.where(steps > 0.5, self.auxetic_poisson_ratio, self.regular_poisson_ratio)
         order = random.permutation(count)
         return radius[order], nu[order]
@@ -123,11 +127,15 @@ def pack(
     if target_pressure is not None:
         packing = _to_pressure(packing, primitives, area, target_pressure, tolerance)
     if outline is not None and not np.all(inside(outline, packing.x, packing.y)):
-        raise InputError("the grains do not fit: lower the packing fraction or enlarge the container")
+        raise InputError(
+            "the grains do not fit: lower the packing fraction or enlarge the container"
+        )
     return packing
 
 
-def open_area(outline: list[Point] | None, world: RigidWorld, box: PeriodicBox | None = None) -> float:
+def open_area(
+    outline: list[Point] | None, world: RigidWorld, box: PeriodicBox | None = None
+) -> float:
     """Area that the grains can have [R²]: that of the outline or box, less that of the bodies inside it."""
     if outline is not None:
         area = abs(polygon_area(outline))
@@ -157,7 +165,11 @@ def inside(outline: list[Point], x: Floats, y: Floats) -> NDArray[np.bool_]:
 
 
 def _place(
-    radius: Floats, outline: list[Point] | None, world: RigidWorld, box: PeriodicBox | None, random: np.random.Generator
+    radius: Floats,
+    outline: list[Point] | None,
+    world: RigidWorld,
+    box: PeriodicBox | None,
+    random: np.random.Generator,
 ) -> tuple[Floats, Floats]:
     """Random sequential addition of discs (N,), largest first: none touches another, a body, or the outside."""
     if outline is not None:
@@ -179,21 +191,57 @@ def _place(
         batch = max(1000, 4 * len(radius))
         tries += batch
         if tries > 4000 * len(radius) + 200_000:
-            raise InputError("the grains do not fit: lower the packing fraction or enlarge the container")
+            raise InputError(
+                "the grains do not fit: lower the packing fraction or enlarge the container"
+            )
         candidates = low + random.random((batch, 2)) * (high - low)
         if outline is not None:
             candidates = candidates[inside(outline, candidates[:, 0], candidates[:, 1])]
         for body in world.bodies:
             for corners, _ in body.polygons:
-                hidden = inside([(cx, cy) for cx, cy in body.to_world(corners)], candidates[:, 0], candidates[:, 1])
+                hidden = inside(
+                    [(cx, cy) for cx, cy in body.to_world(corners)],
+                    candidates[:, 0],
+                    candidates[:, 1],
+                )
                 candidates = candidates[~hidden]
         spacing = np.array([(high[0] - low[0]) / columns, (high[1] - low[1]) / rows])
-        placed = _add(x, y, radius, order, placed, candidates, primitives, cells, filled, columns, rows, low, spacing, box_form)
+        placed = _add(
+            x,
+            y,
+            radius,
+            order,
+            placed,
+            candidates,
+            primitives,
+            cells,
+            filled,
+            columns,
+            rows,
+            low,
+            spacing,
+            box_form,
+        )
     return x, y
 
 
 @kernel
-def _add(x, y, radius, order, placed, candidates, primitives, cells, filled, columns, rows, low, spacing, box):
+def _add(
+    x,
+    y,
+    radius,
+    order,
+    placed,
+    candidates,
+    primitives,
+    cells,
+    filled,
+    columns,
+    rows,
+    low,
+    spacing,
+    box,
+):
     """Try candidates (C, 2) in turn for the next grains; returns how many grains are placed now."""
     for c in range(candidates.shape[0]):
         if placed == radius.shape[0]:
@@ -208,7 +256,9 @@ def _add(x, y, radius, order, placed, candidates, primitives, cells, filled, col
             if primitives[m, 0] == EDGE:
                 ux = primitives[m, 3]
                 uy = primitives[m, 4]
-                length = (primitives[m, 5] - primitives[m, 1]) * ux + (primitives[m, 6] - primitives[m, 2]) * uy
+                length = (primitives[m, 5] - primitives[m, 1]) * ux + (
+                    primitives[m, 6] - primitives[m, 2]
+                ) * uy
                 along = min(max(dx * ux + dy * uy, 0.0), length)
                 dx -= along * ux
                 dy -= along * uy
@@ -247,7 +297,9 @@ def _add(x, y, radius, order, placed, candidates, primitives, cells, filled, col
     return placed
 
 
-def _grow(packing: Packing, primitives: Floats, scale: float, tolerance: float, progress: Progress | None) -> None:
+def _grow(
+    packing: Packing, primitives: Floats, scale: float, tolerance: float, progress: Progress | None
+) -> None:
     """Let all grains grow from ``scale`` times their rest radius to all of it, relaxing between the steps."""
     full = packing.rest_radius.copy()
     packing.rest_radius = full * scale
@@ -267,7 +319,9 @@ def _relax(packing: Packing, primitives: Floats, tolerance: float, max_iteration
     relaxation = Relaxation(packing, primitives, tolerance=tolerance, max_iterations=max_iterations)
     report = relaxation.run(max_iterations)
     if report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
-        raise InputError(f"the grains do not fit ({report.reason}): lower the packing fraction or enlarge the container")
+        raise InputError(
+            f"the grains do not fit ({report.reason}): lower the packing fraction or enlarge the container"
+        )
     relaxation.write_back()
 
 
@@ -277,7 +331,9 @@ def _pressure(packing: Packing, primitives: Floats, area: float) -> float:
     return observables.pressure(observables.stress(contacts, area, rigid, packing))
 
 
-def _to_pressure(packing: Packing, primitives: Floats, area: float, target: float, tolerance: float) -> Packing:
+def _to_pressure(
+    packing: Packing, primitives: Floats, area: float, target: float, tolerance: float
+) -> Packing:
     """Scale the grains, or rather the box around them, until the pressure is within 1 % of ``target`` [k]."""
     if not target > 0.0:
         raise InputError("the target pressure must be greater than 0")
@@ -306,10 +362,14 @@ def _to_pressure(packing: Packing, primitives: Floats, area: float, target: floa
         else:
             scale = 0.5 * (low + high)
     else:
-        raise InputError(f"a pressure of {target:g} k could not be reached within 1 %; try a value between 0.001 and 0.3")
+        raise InputError(
+            f"a pressure of {target:g} k could not be reached within 1 %; try a value between 0.001 and 0.3"
+        )
     if periodic:
         assert packing.box is not None
         packing.rest_radius = start.rest_radius.copy()
         packing.state /= scale
-        packing.box = PeriodicBox(packing.box.width / scale, packing.box.height / scale, packing.box.shift / scale)
+        packing.box = PeriodicBox(
+            packing.box.width / scale, packing.box.height / scale, packing.box.shift / scale
+        )
     return packing

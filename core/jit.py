@@ -34,7 +34,8 @@ def source_hash() -> str:
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(user_cache_path("auxetic-sandbox") / f"kernels-{source_hash()}")
+    _config: Any = numba.config
+    _config.CACHE_DIR = str(user_cache_path("auxetic-sandbox") / f"kernels-{source_hash()}")
 
 
 def _noalias_pipeline() -> type | None:
@@ -46,10 +47,12 @@ def _noalias_pipeline() -> type | None:
         if not isinstance(compiler.Flags.options["noalias"], Option):
             return None
 
+        passes: Any = compiler.DefaultPassBuilder
+
         class NoAlias(compiler.CompilerBase):
             def define_pipelines(self) -> list[Any]:
                 self.state.flags.noalias = True
-                return [compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)]
+                return [passes.define_nopython_pipeline(self.state)]
 
         return NoAlias
     except (ImportError, AttributeError, KeyError):
@@ -59,14 +62,24 @@ def _noalias_pipeline() -> type | None:
 NOALIAS_PIPELINE = _noalias_pipeline()
 
 
-def kernel(function: Callable[..., Any] | None = None, *, noalias: bool = False, **options: Any) -> Any:
+def kernel(
+    function: Callable[..., Any] | None = None, *, noalias: bool = False, **options: Any
+) -> Any:
     """Compile a function to machine code that releases the GIL and is cached on disk.
 
     Use as ``@kernel`` or ``@kernel(noalias=True)``; further keywords go to ``numba.njit``.
     """
 
     def decorate(f: Callable[..., Any]) -> Any:
-        flags: dict[str, Any] = dict(nogil=True, cache=True, error_model="numpy", fastmath=FAST_MATH, forceinline=True)
+        flags: dict[str, Any] = {
+            "nogil": True,
+            "cache": True,
+            "error_model": "numpy",
+            "fastmath": FAST_MATH,
+            # One copy of the code: else a first run, which has both, may call another copy of a
+            # callee than a run from the cache, optimised differently in the last bit.
+            "forceinline": True,
+        }
         if noalias and NOALIAS_PIPELINE is not None:
             flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)

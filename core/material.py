@@ -26,9 +26,13 @@ def check_material(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> No
     nu = np.asarray(poisson_ratio, dtype=np.float64)
     stiffness = np.asarray(contact_stiffness, dtype=np.float64)
     if not np.all((nu > -1.0) & (nu < 1.0)):
-        raise InputError("Poisson's ratio must lie between -1 and 1, both excluded: give a value such as -0.8 or 0.8")
+        raise InputError(
+            "Poisson's ratio must lie between -1 and 1, both excluded: give a value such as -0.8 or 0.8"
+        )
     if not np.all((stiffness > 2.0) & np.isfinite(stiffness)):
-        raise InputError("contact stiffness C must be greater than 2 and finite: at C = 2 the grain itself would be rigid")
+        raise InputError(
+            "contact stiffness C must be greater than 2 and finite: at C = 2 the grain itself would be rigid"
+        )
 
 
 def deformation_stiffness(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
@@ -40,12 +44,16 @@ def deformation_stiffness(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike
 
 def area_modulus(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
     """κ(1+ν) [k]: resistance to a change of area."""
-    return deformation_stiffness(poisson_ratio, contact_stiffness) * (1.0 + np.asarray(poisson_ratio, dtype=np.float64))
+    return deformation_stiffness(poisson_ratio, contact_stiffness) * (
+        1.0 + np.asarray(poisson_ratio, dtype=np.float64)
+    )
 
 
 def shape_modulus(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
     """κ(1−ν) [k]: resistance to a change of shape."""
-    return deformation_stiffness(poisson_ratio, contact_stiffness) * (1.0 - np.asarray(poisson_ratio, dtype=np.float64))
+    return deformation_stiffness(poisson_ratio, contact_stiffness) * (
+        1.0 - np.asarray(poisson_ratio, dtype=np.float64)
+    )
 
 
 def from_paper(stiffness_ratio: ArrayLike, softness: ArrayLike) -> tuple[Floats, Floats]:

@@ -24,7 +24,7 @@ FIT, PAIRS_FULL, SLOTS_FULL, RIGID_FULL = 0, 1, 2, 3  # what a rebuild answers
 class Lists(NamedTuple):
     """Preallocated arrays of the neighbour search for N grains and at most P pairs in at most K slots."""
 
-    count: NDArray[np.int64]  # (K,) grains that have more than t neighbours
+    width: NDArray[np.int64]  # (K,) grains that have more than t neighbours
     offset: NDArray[np.int64]  # (K,) where slot t begins in ``neighbor``
     neighbor: NDArray[np.uint32]  # (2 P + padding,)
     stiffness: NDArray[np.float64]  # (2 P + padding,) C_ij [k]
@@ -46,7 +46,7 @@ def allocate(grains: int, pairs: int, slots: int) -> Lists:
     entries = 2 * pairs + SLOT_PADDING * slots
     integers = lambda n: np.zeros(n, dtype=np.int64)  # noqa: E731
     return Lists(
-        count=integers(slots),
+        width=integers(slots),
         offset=integers(slots),
         neighbor=np.zeros(entries, dtype=np.uint32),
         stiffness=np.zeros(entries),
@@ -74,7 +74,7 @@ def wrap(value, length, inverse):
 
 @kernel
 def search_cells(state, skin, lists, box):
-    """Sort grains into cells at least one cut-off wide. Returns (columns, rows, cell width, cell height, x0, y0, widest extent)."""
+    """Sort grains into cells at least one cut-off wide. Returns (columns, rows)."""
     grains = state.shape[1]
     widest = 0.0
     for i in range(grains):
@@ -97,8 +97,8 @@ def search_cells(state, skin, lists, box):
     if open_y:
         y0 = state[1].min()
         height = state[1].max() - y0
-    # Never more cells than a few a grain, however far one grain has been thrown.
-    most = 2.0 * math.sqrt(grains) + 4.0
+    # Never more cells than ``cell_start`` holds, however far one grain has been thrown.
+    most = math.sqrt(lists.cell_start.shape[0] - 1.0)
     columns = int(min(max(width / reach, 1.0), most))
     rows = int(min(max(height / reach, 1.0), most))
     cell_width = width / columns if width > 0.0 else reach
@@ -128,7 +128,7 @@ def search_cells(state, skin, lists, box):
     for c in range(columns * rows, 0, -1):
         start[c] = start[c - 1]
     start[0] = 0
-    return columns, rows, cell_width, cell_height, x0, y0, widest
+    return columns, rows
 
 
 @kernel
@@ -142,15 +142,16 @@ def near(state, i, j, skin, box):
         dy -= turns * box[2]
         dx -= box[0] * np.rint(dx * box[1])
     reach = state[2, i] + state[2, j] + skin
-    reach += math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + math.sqrt(state[3, j] ** 2 + state[4, j] ** 2)
+    reach += math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + math.sqrt(
+        state[3, j] ** 2 + state[4, j] ** 2
+    )
     return dx * dx + dy * dy < reach * reach
 
 
 @kernel
 def find_pairs(state, skin, lists, box):
     """List every near pair once in ``first``, ``second``. Returns their number, or -1 if the arrays are too short."""
-    grains = state.shape[1]
-    columns, rows, cell_width, cell_height, x0, y0, widest = search_cells(state, skin, lists, box)
+    columns, rows = search_cells(state, skin, lists, box)
     wrap_x = False
     wrap_y = False
     sheared = False
@@ -214,7 +215,7 @@ def rebuild(state, contact_stiffness, skin, lists, box):
     pairs = find_pairs(state, skin, lists, box)
     if pairs < 0:
         return PAIRS_FULL
-    slots = lists.count.shape[0]
+    slots = lists.width.shape[0]
     degree = lists.degree
     for i in range(grains):
         degree[i] = 0
@@ -234,9 +235,9 @@ def rebuild(state, contact_stiffness, skin, lists, box):
     offset = 0
     for t in range(slots):
         # Grains with more than t neighbours stand before all others.
-        lists.count[t] = start[slots - t]
+        lists.width[t] = start[slots - t]
         lists.offset[t] = offset
-        offset += (lists.count[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
+        offset += (lists.width[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
     if offset > lists.neighbor.shape[0]:
         return PAIRS_FULL
     for a in range(grains):

@@ -55,7 +55,9 @@ def _measure_pairs(state, support, stiffness, pairs, first, second, box, values)
         if overlap > 0.0:
             r2 = dx * dx + dy * dy
             f = 2.0 * stiffness[i] * stiffness[j] / (stiffness[i] + stiffness[j]) * overlap
-            slope = (support[2, i] * c2 - support[1, i] * s2) / hi + (support[2, j] * c2 - support[1, j] * s2) / hj
+            slope = (support[2, i] * c2 - support[1, i] * s2) / hi + (
+                support[2, j] * c2 - support[1, j] * s2
+            ) / hj
             along = f / np.sqrt(r2)
             turn = f * slope / r2
             values[0, used] = -along * dx - turn * dy
@@ -91,7 +93,9 @@ def _measure_rigid(state, support, stiffness, rigid, values):
                 values[4, used] = row[1]
                 values[5, used] = row[2]
             else:
-                _, turn = rigid_contacts.support(support[0, i], support[1, i], support[2, i], nx, ny)
+                _, turn = rigid_contacts.support(
+                    support[0, i], support[1, i], support[2, i], nx, ny
+                )
                 values[4, used] = state[0, i] - h * nx + turn * ny
                 values[5, used] = state[1, i] - h * ny - turn * nx
             rigid.grain[used] = i
@@ -122,7 +126,16 @@ def grain_contacts(packing: Packing) -> GrainContacts:
         room *= 2
     values = np.empty((6, pairs))
     support = support_coefficients(packing)
-    used = _measure_pairs(packing.state, support, packing.contact_stiffness, pairs, lists.first, lists.second, box, values)
+    used = _measure_pairs(
+        packing.state,
+        support,
+        packing.contact_stiffness,
+        pairs,
+        lists.first,
+        lists.second,
+        box,
+        values,
+    )
     return GrainContacts(lists.first[:used].copy(), lists.second[:used].copy(), *values[:, :used])
 
 
@@ -131,10 +144,16 @@ def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
     while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0):
         room = 2 * len(rigid.grain)
-        rigid = rigid._replace(grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64))
+        rigid = rigid._replace(
+            grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
+        )
     values = np.empty((6, int(rigid.used[0])))
-    used = _measure_rigid(packing.state, support_coefficients(packing), packing.contact_stiffness, rigid, values)
-    return RigidContacts(rigid.grain[:used].copy(), rigid.primitive[:used].copy(), *values[:, :used])
+    used = _measure_rigid(
+        packing.state, support_coefficients(packing), packing.contact_stiffness, rigid, values
+    )
+    return RigidContacts(
+        rigid.grain[:used].copy(), rigid.primitive[:used].copy(), *values[:, :used]
+    )
 
 
 def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Floats:
@@ -152,7 +171,12 @@ def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Flo
     return total
 
 
-def stress(contacts: GrainContacts, area: float, rigid: RigidContacts | None = None, packing: Packing | None = None) -> Floats:
+def stress(
+    contacts: GrainContacts,
+    area: float,
+    rigid: RigidContacts | None = None,
+    packing: Packing | None = None,
+) -> Floats:
     """Stress tensor σ_ij = (1/area) Σ_c F_i d_j (2, 2) [k], compression positive.
 
     Haver et al., doi:10.1073/pnas.2317915121, appendix "Numerical biaxial setup". Contacts with bodies count with the branch from
@@ -168,7 +192,10 @@ def stress(contacts: GrainContacts, area: float, rigid: RigidContacts | None = N
         dx = rigid.x - packing.x[rigid.grain]
         dy = rigid.y - packing.y[rigid.grain]
         tensor -= np.array(
-            [[np.sum(rigid.fx * dx), np.sum(rigid.fx * dy)], [np.sum(rigid.fy * dx), np.sum(rigid.fy * dy)]]
+            [
+                [np.sum(rigid.fx * dx), np.sum(rigid.fx * dy)],
+                [np.sum(rigid.fy * dx), np.sum(rigid.fy * dy)],
+            ]
         )
     return tensor / area
 
@@ -178,7 +205,9 @@ def pressure(tensor: Floats) -> float:
     return 0.5 * float(np.trace(tensor))
 
 
-def coordination(packing: Packing, contacts: GrainContacts, rigid: RigidContacts | None = None) -> tuple[float, float]:
+def coordination(
+    packing: Packing, contacts: GrainContacts, rigid: RigidContacts | None = None
+) -> tuple[float, float]:
     """Coordination number Z, contacts a grain: (all grains counted, rattlers left out).
 
     A rattler has fewer than three contacts; they are taken out until none is left. Contacts with bodies hold a grain but are
@@ -187,11 +216,19 @@ def coordination(packing: Packing, contacts: GrainContacts, rigid: RigidContacts
     count = len(packing)
     if count == 0:
         return 0.0, 0.0
-    held = np.zeros(count, dtype=np.int64) if rigid is None else np.bincount(rigid.grain, minlength=count)
+    held = (
+        np.zeros(count, dtype=np.int64)
+        if rigid is None
+        else np.bincount(rigid.grain, minlength=count)
+    )
     alive = np.ones(len(contacts.i), dtype=bool)
     frame = np.ones(count, dtype=bool)
     while True:
-        degree = np.bincount(contacts.i[alive], minlength=count) + np.bincount(contacts.j[alive], minlength=count) + held
+        degree = (
+            np.bincount(contacts.i[alive], minlength=count)
+            + np.bincount(contacts.j[alive], minlength=count)
+            + held
+        )
         loose = frame & (degree < 3)
         if not loose.any():
             break
@@ -218,4 +255,5 @@ def force_drops(force: Floats) -> Floats:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], falling, [False]]).astype(np.int8)))
     starts, ends = edges[::2], edges[1::2]
     total = np.concatenate([[0.0], np.cumsum(change)])
-    return total[starts] - total[ends]
+    drops: Floats = total[starts] - total[ends]
+    return drops

@@ -39,12 +39,18 @@ class PeriodicBox:
 
     def __post_init__(self) -> None:
         if not (self.width > 0.0 and self.height > 0.0 and np.isfinite(self.shift)):
-            raise InputError("a periodic box needs a width and a height greater than 0 and a finite shift")
+            raise InputError(
+                "a periodic box needs a width and a height greater than 0 and a finite shift"
+            )
 
     def kernel_form(self) -> tuple[float, float, float, float, float]:
         """(width, 1/width, height, 1/height, shift) with (0, 0) for an open direction, as the kernels want it."""
-        width, inverse_width = (self.width, 1.0 / self.width) if np.isfinite(self.width) else (0.0, 0.0)
-        height, inverse_height = (self.height, 1.0 / self.height) if np.isfinite(self.height) else (0.0, 0.0)
+        width, inverse_width = (
+            (self.width, 1.0 / self.width) if np.isfinite(self.width) else (0.0, 0.0)
+        )
+        height, inverse_height = (
+            (self.height, 1.0 / self.height) if np.isfinite(self.height) else (0.0, 0.0)
+        )
         return width, inverse_width, height, inverse_height, self.shift
 
     @property
@@ -80,7 +86,9 @@ class Packing:
             if array.ndim == 0:
                 array = np.full(count, array)
             if array.shape != (count,):
-                raise InputError(f"{name} must be one number or {count} numbers, one a grain; got shape {array.shape}")
+                raise InputError(
+                    f"{name} must be one number or {count} numbers, one a grain; got shape {array.shape}"
+                )
             return np.array(array)
 
         self.rest_radius = per_grain(rest_radius, "rest_radius")
@@ -90,7 +98,9 @@ class Packing:
         self.state[0] = x
         self.state[1] = per_grain(y, "y")
         self.state[2] = self.rest_radius
-        self.label: NDArray[np.int64] = np.arange(count) if label is None else np.array(label, dtype=np.int64)
+        self.label: NDArray[np.int64] = (
+            np.arange(count) if label is None else np.array(label, dtype=np.int64)
+        )
         self.box = box
         self.validate()
 
@@ -102,7 +112,9 @@ class Packing:
         if self.state.shape != (5, count) or self.label.shape != (count,):
             raise InputError("a packing's arrays disagree about the number of grains")
         if not np.all(np.isfinite(self.state)) or np.any(np.abs(self.state) > MAX_LENGTH):
-            raise InputError(f"grain positions and shapes must be finite and within ±{MAX_LENGTH:g} R")
+            raise InputError(
+                f"grain positions and shapes must be finite and within ±{MAX_LENGTH:g} R"
+            )
         if not np.all((self.rest_radius > 1e-6) & (self.rest_radius < MAX_LENGTH)):
             raise InputError("rest radii must be greater than 1e-6 R and finite")
         if np.unique(self.label).size != count:
@@ -130,12 +142,14 @@ class Packing:
     @property
     def angle(self) -> Floats:
         """Angle θ of the longer axis in (−π/2, π/2] [rad], (N,); 0 for a circle."""
-        return 0.5 * np.arctan2(self.state[4], self.state[3])
+        angle: Floats = 0.5 * np.arctan2(self.state[4], self.state[3])
+        return angle
 
     @property
     def auxetic(self) -> NDArray[np.bool_]:
         """True where Poisson's ratio is negative, (N,)."""
-        return self.poisson_ratio < 0.0
+        auxetic: NDArray[np.bool_] = self.poisson_ratio < 0.0
+        return auxetic
 
     @property
     def rest_area(self) -> float:
@@ -167,7 +181,13 @@ class Packing:
     def hash(self) -> str:
         """SHA-256 of every bit of the packing, as 64 hexadecimal digits."""
         digest = hashlib.sha256()
-        for array in (self.state, self.rest_radius, self.poisson_ratio, self.contact_stiffness, self.label):
+        for array in (
+            self.state,
+            self.rest_radius,
+            self.poisson_ratio,
+            self.contact_stiffness,
+            self.label,
+        ):
             digest.update(str(array.shape).encode())
             digest.update(np.ascontiguousarray(array).tobytes())
         digest.update(repr(self.box).encode())
@@ -184,7 +204,9 @@ class Packing:
             "poisson_ratio": self.poisson_ratio,
             "contact_stiffness": self.contact_stiffness,
             "label": self.label,
-            "box": np.array([] if box is None else [box.width, box.height, box.shift], dtype=np.float64),
+            "box": np.array(
+                [] if box is None else [box.width, box.height, box.shift], dtype=np.float64
+            ),
         }
         with atomic_write(path) as file:
             np.savez_compressed(file, allow_pickle=False, **arrays)
@@ -197,13 +219,17 @@ class Packing:
             with zipfile.ZipFile(path) as archive:
                 unpacked = sum(info.file_size for info in archive.infolist())
                 if unpacked > 16 * 8 * MAX_GRAINS:
-                    raise InputError(f"{path}: would unpack to {unpacked} bytes, more than any packing needs; not opened")
+                    raise InputError(
+                        f"{path}: would unpack to {unpacked} bytes, more than any packing needs; not opened"
+                    )
             with np.load(path, allow_pickle=False) as data:
                 if str(data["format"]) != FORMAT:
                     raise InputError(f"{path}: not a packing file of this program")
                 version = int(data["version"])
                 if version != FORMAT_VERSION:
-                    raise InputError(f"{path}: format version {version}, this program reads {FORMAT_VERSION}; update the program")
+                    raise InputError(
+                        f"{path}: format version {version}, this program reads {FORMAT_VERSION}; update the program"
+                    )
                 packing = cls.__new__(cls)
                 packing.state = _floats(data["state"], path)
                 packing.rest_radius = _floats(data["rest_radius"], path)
@@ -221,8 +247,13 @@ class Packing:
             raise InputError(f"{path}: malformed packing file (wrong array shapes)")
         packing.box = PeriodicBox(*map(float, box)) if box.size else None
         count = packing.state.shape[1]
-        if any(a.shape != (count,) for a in (packing.rest_radius, packing.poisson_ratio, packing.contact_stiffness)):
-            raise InputError(f"{path}: malformed packing file (arrays disagree about the number of grains)")
+        if any(
+            a.shape != (count,)
+            for a in (packing.rest_radius, packing.poisson_ratio, packing.contact_stiffness)
+        ):
+            raise InputError(
+                f"{path}: malformed packing file (arrays disagree about the number of grains)"
+            )
         packing.validate()
         return packing
 

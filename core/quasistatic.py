@@ -1,9 +1,9 @@
 """Load increments: move the rigid bodies a bounded step, predict, relax, observe.
 
-The hand waits for the physics. A body moves at most ``step`` [R]; the packing is relaxed to its tolerance, or ends with a named
-reason; only then does the body move on. However far a hand has asked, it gets there in such increments, so a body flung across the
-box passes through nothing. Wall time decides how often somebody looks, never how far a relaxation goes: an increment may be cut
-into any number of calls and takes the same course to the last bit.
+The hand waits for the physics. A body moves at most ``step`` [R]; the packing is relaxed to its tolerance, or ends with
+a named reason; only then does the body move on. However far a hand has asked, it gets there in such increments, so a body
+flung across the box passes through nothing. Wall time decides how often somebody looks, never how far a relaxation goes:
+an increment may be cut into any number of calls and takes the same course to the last bit.
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError
 from core.packing import Packing
-from core.relaxation import DEFAULT_FORCE_FLOOR, DEFAULT_SKIN, DEFAULT_TOLERANCE, Relaxation, Report, StopReason
+from core.relaxation import (
+    DEFAULT_FORCE_FLOOR,
+    DEFAULT_SKIN,
+    DEFAULT_TOLERANCE,
+    Relaxation,
+    Report,
+    StopReason,
+)
 from core.rigid import Point, RigidWorld
 
 Floats = NDArray[np.float64]
@@ -57,13 +64,17 @@ class Increment:
 class Quasistatic:
     """A packing among rigid bodies, driven increment by increment."""
 
-    def __init__(self, packing: Packing, world: RigidWorld, settings: Settings | None = None) -> None:
+    def __init__(
+        self, packing: Packing, world: RigidWorld, settings: Settings | None = None
+    ) -> None:
         self.packing = packing
         self.world = world
         self.settings = settings or Settings()
         smallest = float(packing.rest_radius.min()) if len(packing) else 1.0
         if self.settings.step > LONGEST_STEP * smallest * (1.0 + 1e-9):
-            raise InputError(f"the increment must be at most {LONGEST_STEP} of the smallest radius, here {LONGEST_STEP * smallest:.3g} R")
+            raise InputError(
+                f"the increment must be at most {LONGEST_STEP} of the smallest radius, here {LONGEST_STEP * smallest:.3g} R"
+            )
         self.reactions = np.zeros((len(world.bodies), 3))
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
@@ -87,7 +98,9 @@ class Quasistatic:
         self._placement = self.world.placement()
         for name, target in targets.items():
             push = self.reactions[self.world.index(name)]
-            moved, stopped = self.world.advance(name, target, self.settings.step, (float(push[0]), float(push[1])))
+            moved, stopped = self.world.advance(
+                name, target, self.settings.step, (float(push[0]), float(push[1]))
+            )
             self._moved[name] = moved
             if stopped is not None:
                 self._stopped[name] = stopped
@@ -125,7 +138,9 @@ class Quasistatic:
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
         """All contacts as things stand now."""
-        return observables.grain_contacts(self.packing), observables.body_contacts(self.packing, self.world.primitives()[0])
+        return observables.grain_contacts(self.packing), observables.body_contacts(
+            self.packing, self.world.primitives()[0]
+        )
 
     def progress(self) -> Report | None:
         """How the increment under way stands, or None."""
@@ -139,7 +154,7 @@ class Quasistatic:
         self._last = np.ascontiguousarray(self._last[:, ~gone])
 
     def _predict(self) -> None:
-        """Start from the displacement of the increment before, in proportion to the step: it saves a tenth to a third of the work."""
+        """Start from the displacement of the increment before, scaled to the step: saves a tenth to a third of the work."""
         if self._last_length > 0.0 and self._length > 0.0:
             ratio = min(self._length / self._last_length, 1.0)
             # A rearrangement is not going to happen twice: no grain is sent further than the body moves.
@@ -152,4 +167,11 @@ class Quasistatic:
         primitives, owner = self.world.primitives()
         bodies = observables.body_contacts(self.packing, primitives)
         self.reactions = observables.reactions(bodies, owner, self.world.placement())
-        return Increment(self._moved, self._stopped, report, self.reactions, observables.grain_contacts(self.packing), bodies)
+        return Increment(
+            self._moved,
+            self._stopped,
+            report,
+            self.reactions,
+            observables.grain_contacts(self.packing),
+            bodies,
+        )

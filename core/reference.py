@@ -23,7 +23,7 @@ Vector = tuple[float, float]
 
 
 class Ellipse(NamedTuple):
-    """One grain: centre [R], angle θ of the semi-axis a [rad], semi-axes a and b [R], either longer."""
+    """One grain: centre [R], angle θ of the semi-axis a [rad], semi-axes a, b [R], either longer."""
 
     x: float
     y: float

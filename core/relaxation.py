@@ -75,7 +75,9 @@ class Relaxation:
         if packing.box is not None and count:
             reach = 2.0 * float(packing.semi_axes[0].max()) + skin
             if min(packing.box.width, packing.box.height) < 2.0 * reach:
-                raise InputError(f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains")
+                raise InputError(
+                    f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"
+                )
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
@@ -94,7 +96,12 @@ class Relaxation:
         control[fire.DT] = fire.DT_START * self._limits.dt_max
         control[fire.ALPHA] = fire.ALPHA_START
         control[fire.PENDING] = 1.0
+        control[fire.START_ENERGY] = np.nan if count else 0.0
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
+        if not np.all(np.isfinite(packing.state)):
+            # The neighbour search would lose such a grain without a word.
+            control[fire.ENERGY] = control[fire.RESIDUAL] = np.nan
+            self._reason = StopReason.NOT_FINITE
 
     def run(self, max_iterations: int) -> Report:
         """Go on for at most ``max_iterations`` force evaluations; the GIL is free meanwhile."""
@@ -139,17 +146,21 @@ class Relaxation:
             if answer == neighbors.FIT:
                 return
             lists = self._minimizer.lists
-            grains, pairs, slots = len(self.packing), len(lists.first), len(lists.count)
+            grains, pairs, slots = len(self.packing), len(lists.first), len(lists.width)
             if answer == neighbors.RIGID_FULL:
                 assert self._rigid is not None
                 room = 2 * len(self._rigid.grain)
-                self._rigid = self._rigid._replace(grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64))
+                self._rigid = self._rigid._replace(
+                    grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
+                )
                 continue
             if answer == neighbors.PAIRS_FULL:
                 pairs *= 2
             else:
                 slots *= 2
-            self._minimizer = self._minimizer._replace(lists=neighbors.allocate(grains, pairs, slots))
+            self._minimizer = self._minimizer._replace(
+                lists=neighbors.allocate(grains, pairs, slots)
+            )
 
 
 def _minimizer(packing: Packing) -> fire.Minimizer:

@@ -27,7 +27,9 @@ Point = tuple[float, float]
 Role = Literal["wall", "piston", "intruder", "body"]
 
 SUBSTEPS = 4
-HELD_MASS = 50.0  # [k · increment²]: a pull beyond the hand's limit by 1 k R gives way 0.01 R an increment
+HELD_MASS = (
+    50.0  # [k · increment²]: a pull beyond the hand's limit by 1 k R gives way 0.01 R an increment
+)
 SAME_POINT = 1e-9  # [R] segment ends closer than this are joined
 
 
@@ -35,8 +37,9 @@ SAME_POINT = 1e-9  # [R] segment ends closer than this are joined
 class RigidBody:
     """One body. Shapes are in the body's own frame [R]; ``position`` [R] and ``angle`` [rad] place them.
 
-    role: wall, piston, intruder or body. Static unless ``held`` (a hand can drag it anywhere) or ``axis`` (unit vector: it slides
-    along that line, and ``travel`` bounds how far from where it stood first [R]). ``force_limit`` [k R]: the hand gives way there.
+    role: wall, piston, intruder or body. Static unless ``held`` (a hand can drag it anywhere) or ``axis`` (unit vector:
+    it slides along that line, and ``travel`` bounds how far from where it stood first [R]). ``force_limit`` [k R]: the
+    hand gives way there.
     """
 
     name: str
@@ -44,8 +47,12 @@ class RigidBody:
     position: Point = (0.0, 0.0)
     angle: float = 0.0
     discs: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, radius
-    segments: list[tuple[float, float, float, float, float]] = field(default_factory=list)  # x0, y0, x1, y1, radius
-    polygons: list[tuple[tuple[Point, ...], float]] = field(default_factory=list)  # corners counter-clockwise, radius
+    segments: list[tuple[float, float, float, float, float]] = field(
+        default_factory=list
+    )  # x0, y0, x1, y1, radius
+    polygons: list[tuple[tuple[Point, ...], float]] = field(
+        default_factory=list
+    )  # corners counter-clockwise, radius
     held: bool = False
     axis: Point | None = None
     travel: tuple[float, float] = (-math.inf, math.inf)
@@ -54,8 +61,16 @@ class RigidBody:
 
     def __post_init__(self) -> None:
         self.home = self.position
-        numbers = [*self.position, self.angle, *(v for row in (*self.discs, *self.segments) for v in row)]
-        numbers += [v for corners, radius in self.polygons for v in (*(c for corner in corners for c in corner), radius)]
+        numbers = [
+            *self.position,
+            self.angle,
+            *(v for row in (*self.discs, *self.segments) for v in row),
+        ]
+        numbers += [
+            v
+            for corners, radius in self.polygons
+            for v in (*(c for corner in corners for c in corner), radius)
+        ]
         if not all(map(math.isfinite, numbers)):
             raise InputError(f"body {self.name!r}: positions and sizes must be finite numbers")
         self.polygons = [(_convex(corners, self.name), radius) for corners, radius in self.polygons]
@@ -69,7 +84,12 @@ class RigidBody:
         """Body frame → world, (n, 2) [R]."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         p = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        return np.column_stack([self.position[0] + c * p[:, 0] - s * p[:, 1], self.position[1] + s * p[:, 0] + c * p[:, 1]])
+        return np.column_stack(
+            [
+                self.position[0] + c * p[:, 0] - s * p[:, 1],
+                self.position[1] + s * p[:, 0] + c * p[:, 1],
+            ]
+        )
 
     def primitives(self) -> Floats:
         """The body's shapes as rows for the kernels, (M, 8); see ``rigid_contacts``."""
@@ -84,7 +104,9 @@ class RigidBody:
         rows += _edges_and_vertices(edges)
         for corners, radius in self.polygons:
             p = [(float(x), float(y)) for x, y in self.to_world(corners)]
-            rows += _edges_and_vertices([(p[k], p[(k + 1) % len(p)], radius) for k in range(len(p))])
+            rows += _edges_and_vertices(
+                [(p[k], p[(k + 1) % len(p)], radius) for k in range(len(p))]
+            )
         return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
 
     def area(self) -> float:
@@ -110,7 +132,9 @@ class RigidWorld:
         for body in self.bodies:
             if body.name == name:
                 return body
-        raise InputError(f"no rigid body is called {name!r}; there are: {', '.join(b.name for b in self.bodies)}")
+        raise InputError(
+            f"no rigid body is called {name!r}; there are: {', '.join(b.name for b in self.bodies)}"
+        )
 
     def index(self, name: str) -> int:
         """Place of a body in ``bodies`` and in arrays of reactions."""
@@ -128,14 +152,18 @@ class RigidWorld:
 
     def placement(self) -> Floats:
         """x, y [R] and angle [rad] of every body, (B, 3)."""
-        return np.array([[*body.position, body.angle] for body in self.bodies], dtype=np.float64).reshape(-1, 3)
+        return np.array(
+            [[*body.position, body.angle] for body in self.bodies], dtype=np.float64
+        ).reshape(-1, 3)
 
     def place(self, placement: Floats) -> None:
         """Put every body where ``placement`` (B, 3) says."""
         for body, (x, y, angle) in zip(self.bodies, placement, strict=True):
             body.position, body.angle = (float(x), float(y)), float(angle)
 
-    def advance(self, name: str, target: Point, step: float, reaction: Point = (0.0, 0.0)) -> tuple[Point, str | None]:
+    def advance(
+        self, name: str, target: Point, step: float, reaction: Point = (0.0, 0.0)
+    ) -> tuple[Point, str | None]:
         """Move a body towards ``target`` [R] by at most ``step`` [R]; ``reaction`` [k R] is the push of the grains on it.
 
         Returns the displacement [R] and, where the hand is stopped by more than distance, why: "force limit", "end of travel" or
@@ -153,20 +181,26 @@ class RigidWorld:
         return self._pull(body, wanted, step, reaction)
 
     @staticmethod
-    def _slide(body: RigidBody, wanted: float, step: float, reaction: Point) -> tuple[Point, str | None]:
+    def _slide(
+        body: RigidBody, wanted: float, step: float, reaction: Point
+    ) -> tuple[Point, str | None]:
         """A kinematic piston: exactly as far as it is told, within its travel, unless the grains push harder than the hand."""
         assert body.axis is not None
         axis = np.array(body.axis)
         stood = float(np.dot(np.array(body.position) - body.home, axis))
-        asked = min(max(wanted, -step), step)
-        amount = min(max(stood + asked, body.travel[0]), body.travel[1]) - stood
+        asked = stood + min(max(wanted, -step), step)
+        allowed = min(max(asked, body.travel[0]), body.travel[1])
+        amount = allowed - stood
         push_back = float(np.dot(reaction, axis))
         if amount != 0.0 and -push_back * math.copysign(1.0, amount) > body.force_limit:
             return (0.0, 0.0), "force limit"
-        body.position = (body.position[0] + amount * float(axis[0]), body.position[1] + amount * float(axis[1]))
-        return (amount * float(axis[0]), amount * float(axis[1])), ("end of travel" if abs(amount) < abs(asked) else None)
+        dx, dy = amount * float(axis[0]), amount * float(axis[1])
+        body.position = (body.position[0] + dx, body.position[1] + dy)
+        return (dx, dy), ("end of travel" if allowed != asked else None)
 
-    def _pull(self, body: RigidBody, wanted: Floats, step: float, reaction: Point) -> tuple[Point, str | None]:
+    def _pull(
+        self, body: RigidBody, wanted: Floats, step: float, reaction: Point
+    ) -> tuple[Point, str | None]:
         """A held body: dynamic, on a PivotJoint from the kinematic hand, among the static rest."""
         space = pymunk.Space()
         space.iterations = 30
@@ -179,7 +213,9 @@ class RigidWorld:
         space.add(held, *_shapes(body, held))
         for other in self.bodies:
             if other is not body:
-                fixed = pymunk.Body(body_type=pymunk.Body.KINEMATIC if other.movable else pymunk.Body.STATIC)
+                fixed = pymunk.Body(
+                    body_type=pymunk.Body.KINEMATIC if other.movable else pymunk.Body.STATIC
+                )
                 fixed.position, fixed.angle = other.position, other.angle
                 space.add(fixed, *_shapes(other, fixed))
         hand = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
@@ -249,7 +285,9 @@ def _convex(corners: Sequence[Point], name: str) -> tuple[Point, ...]:
     turns = sides[:, 0] * following[:, 1] - sides[:, 1] * following[:, 0]
     winding = float(np.sum(np.arctan2(turns, np.sum(sides * following, axis=1))))
     if np.any(turns <= 0.0) or abs(winding - 2.0 * math.pi) > 1e-6:
-        raise InputError(f"body {name!r}: only convex polygons are supported; build other shapes from several")
+        raise InputError(
+            f"body {name!r}: only convex polygons are supported; build other shapes from several"
+        )
     return tuple((float(x), float(y)) for x, y in p)
 
 
@@ -261,7 +299,7 @@ def polygon_area(corners: Sequence[Point] | Floats) -> float:
 
 
 def offset_path(points: Sequence[Point], distance: float, *, closed: bool) -> list[Point]:
-    """The path shifted to its right by ``distance`` [R] with mitred corners: a wall's centre line from the face that grains see."""
+    """The path shifted right by ``distance`` [R], corners mitred: a wall's centre line from the face that grains see."""
     p = np.asarray(points, dtype=np.float64)
     count = len(p)
     sides = [(p[(k + 1) % count] - p[k]) for k in range(count if closed else count - 1)]

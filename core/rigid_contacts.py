@@ -1,4 +1,4 @@
-"""Contacts between grains and rigid bodies: edges, vertices and discs, their forces on the grains and the reactions on the bodies.
+"""Contacts between grains and rigid bodies, which are made of edges, vertices and discs.
 
 A primitive is one row of ``primitives`` float64 (M, 8): kind, x0, y0, ux, uy, then x1, y1 (edge) or wx, wy (vertex), and radius:
 
@@ -6,8 +6,10 @@ A primitive is one row of ``primitives`` float64 (M, 8): kind, x0, y0, ux, uy, t
   Δ = h(n) + radius − distance: exact for an ellipse against a plane. Active while the point of contact, which for a tilted
   ellipse is not the foot of the perpendicular, lies on the edge.
 - VERTEX: the point (x0, y0), thickened by ``radius``. Δ = min over n of h(n) + radius − n·d, which is the exact contact of an
-  ellipse with a point or a disc. u and w point along the adjoining edges towards the vertex (w = 0: only one); it is active only where the contact has left those edges, so exactly one of edge and vertex acts and the force is continuous when a grain
-  slides around a corner. (With the centre line in place of the minimum the tangential force jumps there by f h'/r: see MODEL.md.)
+  ellipse with a point or a disc. u and w point along the adjoining edges towards the vertex (w = 0: only one); it is
+  active only where the contact has left those edges, so exactly one of edge and vertex acts and the force is continuous
+  when a grain slides around a corner. (With the centre line
+  in place of the minimum the tangential force jumps there by f h'/r: see MODEL.md.)
 - DISC: as another grain that cannot deform: n along the line of centres.
 
 A contact with a rigid body has the stiffness C of its grain.
@@ -156,7 +158,12 @@ def find_rigid_pairs(state, rigid, reach):
         if kind == EDGE:
             length = (rigid.primitives[m, 5] - x0) * ux + (rigid.primitives[m, 6] - y0) * uy
         for i in range(state.shape[1]):
-            extent = state[2, i] + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + rigid.primitives[m, 7] + reach
+            extent = (
+                state[2, i]
+                + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2)
+                + rigid.primitives[m, 7]
+                + reach
+            )
             dx = state[0, i] - x0
             dy = state[1, i] - y0
             if kind == EDGE:
@@ -175,7 +182,7 @@ def find_rigid_pairs(state, rigid, reach):
 
 @kernel
 def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid):
-    """Add all grain–rigid contacts to ``force`` (whose rows 2–4 hold contact sums, see ``contacts``). Returns their energy [k R²]."""
+    """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
     energy = 0.0
     for k in range(rigid.used[0]):
         i = rigid.grain[k]

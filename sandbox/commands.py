@@ -58,7 +58,9 @@ class Protocol:
 
 
 Command = Grab | Move | Release | Reset | Change | Protocol
-_BY_NAME: dict[str, type] = {c.__name__.lower(): c for c in (Grab, Move, Release, Reset, Change, Protocol)}
+_BY_NAME: dict[str, type] = {
+    c.__name__.lower(): c for c in (Grab, Move, Release, Reset, Change, Protocol)
+}
 
 
 def to_data(command: Command) -> dict[str, Any]:
@@ -74,10 +76,16 @@ def from_data(data: dict[str, Any]) -> Command:
     names = {f.name for f in fields(kind)}
     given = {key: value for key, value in data.items() if key != "command"}
     if set(given) != names:
-        raise InputError(f"command {data['command']!r} needs {', '.join(sorted(names)) or 'nothing'}")
+        raise InputError(
+            f"command {data['command']!r} needs {', '.join(sorted(names)) or 'nothing'}"
+        )
     for name, value in given.items():
         if name in ("x", "y"):
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            if (
+                isinstance(value, bool)
+                or not isinstance(value, (int, float))
+                or not math.isfinite(value)
+            ):
                 raise InputError(f"command {data['command']!r}: {name} must be a finite number")
             given[name] = float(value)
         elif name == "on":

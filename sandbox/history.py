@@ -21,7 +21,9 @@ class Row:
     residual: float  # relative
     iterations: int
     stop_reason: str
-    resisting: float  # force against the drive [k R]; follows from fx, fy and the direction of motion
+    resisting: (
+        float  # force against the drive [k R]; follows from fx, fy and the direction of motion
+    )
 
 
 _HEADER = (
@@ -43,6 +45,7 @@ class History:
 
     def __init__(self) -> None:
         self._rows: list[Row] = []
+        self._curve = np.empty((2, 256))
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -52,7 +55,16 @@ class History:
 
     def append(self, row: Row) -> None:
         """Add a finished increment."""
+        count = len(self._rows)
+        if count == self._curve.shape[1]:
+            self._curve = np.concatenate([self._curve, np.empty_like(self._curve)], axis=1)
+        self._curve[:, count] = row.stroke, row.resisting
         self._rows.append(row)
+
+    @property
+    def curve(self) -> np.ndarray:
+        """Stroke [R] and force against the drive [k R], (2, M): a view of rows that never change again."""
+        return self._curve[:, : len(self._rows)]
 
     def header(self) -> list[str]:
         """Column names with units."""

@@ -9,7 +9,7 @@ import json
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from core.errors import InputError
 from core.files import atomic_write
@@ -44,7 +44,11 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
         "seed": log.seed,
         "settings": log.settings,
     }
-    lines = [head, *({"at": at, **to_data(command)} for at, command in log.commands), {"end": log.end, "hash": log.hash}]
+    lines = [
+        head,
+        *({"at": at, **to_data(command)} for at, command in log.commands),
+        {"end": log.end, "hash": log.hash},
+    ]
     with atomic_write(path) as file:
         file.write("".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines).encode())
 
@@ -65,20 +69,35 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     records = [_record(path, number, line) for number, line in enumerate(lines, 1)]
     head, last = records[0], records[-1]
     if head.get("format") != FORMAT:
-        raise InputError(f"{path}: not a log of this program (its first line does not say {FORMAT!r})")
+        raise InputError(
+            f"{path}: not a log of this program (its first line does not say {FORMAT!r})"
+        )
     if head.get("version") != VERSION:
-        raise InputError(f"{path}: log version {head.get('version')!r}, this program reads {VERSION}; update the program")
-    scene, packing, seed, settings = (head.get(key) for key in ("scene", "packing", "seed", "settings"))
-    if not (isinstance(scene, str) and isinstance(packing, str) and _whole(seed) and isinstance(settings, dict)):
+        raise InputError(
+            f"{path}: log version {head.get('version')!r}, this program reads {VERSION}; update the program"
+        )
+    scene, packing, seed, settings = (
+        head.get(key) for key in ("scene", "packing", "seed", "settings")
+    )
+    if not (
+        isinstance(scene, str)
+        and isinstance(packing, str)
+        and _whole(seed)
+        and isinstance(settings, dict)
+    ):
         raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
     if len(records) < 2 or "end" not in last:
-        raise InputError(f"{path}: the log is truncated (its last line does not say where the run ended)")
+        raise InputError(
+            f"{path}: the log is truncated (its last line does not say where the run ended)"
+        )
     commands: list[tuple[int, Command]] = []
     before = 0
     for number, record in enumerate(records[1:-1], 2):
         at = record.pop("at", None)
         if not _whole(at) or at < before:
-            raise InputError(f"{path}: line {number}: 'at' must be a whole number that never decreases")
+            raise InputError(
+                f"{path}: line {number}: 'at' must be a whole number that never decreases"
+            )
         try:
             commands.append((at, from_data(record)))
         except InputError as error:
@@ -86,7 +105,9 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         before = at
     end, digest = last["end"], last.get("hash")
     if not _whole(end) or not before <= end <= MOST_INCREMENTS or not isinstance(digest, str):
-        raise InputError(f"{path}: the last line must give 'end', a number of increments, and 'hash'")
+        raise InputError(
+            f"{path}: the last line must give 'end', a number of increments, and 'hash'"
+        )
     return Log(scene, packing, seed, settings, tuple(commands), end, digest)
 
 
@@ -94,7 +115,9 @@ def _record(path: Path, number: int, line: str) -> dict[str, Any]:
     try:
         record = json.loads(line, parse_constant=lambda name: _refuse(name))
     except (ValueError, RecursionError):
-        raise InputError(f"{path}: line {number} is not valid JSON; the log is damaged or truncated") from None
+        raise InputError(
+            f"{path}: line {number} is not valid JSON; the log is damaged or truncated"
+        ) from None
     if not isinstance(record, dict):
         raise InputError(f"{path}: line {number} is not a JSON object")
     return record
@@ -104,5 +127,5 @@ def _refuse(name: str) -> float:
     raise ValueError(name)
 
 
-def _whole(value: object) -> bool:
+def _whole(value: object) -> TypeGuard[int]:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0

@@ -6,23 +6,22 @@ import hashlib
 import math
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from core.errors import InputError
-from core.packing import Packing
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
-from core.rigid import Point, RigidBody
-from core.rigid_contacts import DISC
+from core.rigid import Point
 from core.warmup import compile_kernels
 from sandbox.commands import Change, Command, Grab, Move, Protocol, Release, Reset
-from sandbox.frame import BodyShape, Contacts, Frame, HandleState
+from sandbox.frame import Frame
 from sandbox.history import History, Row
 from sandbox.log import Log
 from sandbox.log import write_log as write_log_file
+from sandbox.snapshot import View, take
 from scenes import registry
 from scenes.scene import Check, Handle, Scene, Setup, Track, Values
 
@@ -38,7 +37,11 @@ class Session:
     """A scene that runs. Everything but ``submit`` belongs to one thread, the solver's."""
 
     def __init__(
-        self, scene: str, packing: str = "mixed", seed: int = 1, settings: Mapping[str, object] | None = None
+        self,
+        scene: str,
+        packing: str = "mixed",
+        seed: int = 1,
+        settings: Mapping[str, object] | None = None,
     ) -> None:
         """Checks the request and is quick. Raises InputError."""
         self.scene: Scene = registry.get(scene)
@@ -59,12 +62,15 @@ class Session:
     def build(self, progress: Progress | None = None) -> None:
         """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
         self._progress = progress
-        report = progress or (lambda text, share: None)
+        report = progress or _silent
         report(COMPILING, 0.0)
         compile_kernels(None, True, lambda share: report(COMPILING, COMPILE_SHARE * share))
         report(PACKING, COMPILE_SHARE)
         setup = self.scene.build(
-            self.settings, self.packing, self.seed, lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share)
+            self.settings,
+            self.packing,
+            self.seed,
+            lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
         )
         self._start_packing = setup.packing.copy()
         self._start_placement = setup.world.placement()
@@ -176,7 +182,9 @@ class Session:
         for handle in self._require().handles:
             if handle.body == name:
                 return handle
-        raise InputError(f"nothing here is called {name!r}; there are: {', '.join(h.body for h in self._require().handles)}")
+        raise InputError(
+            f"nothing here is called {name!r}; there are: {', '.join(h.body for h in self._require().handles)}"
+        )
 
     # -- running --------------------------------------------------------------------------------------------------------------
 
@@ -236,7 +244,11 @@ class Session:
         for name, target in self._targets.items():
             body = self._require().world[name]
             way = np.array(target) - body.position
-            distance = abs(float(np.dot(way, body.axis))) if body.axis is not None else float(np.hypot(*way))
+            distance = (
+                abs(float(np.dot(way, body.axis)))
+                if body.axis is not None
+                else float(np.hypot(*way))
+            )
             if distance > ARRIVED and name not in self._blocked:
                 wanted[name] = target
         return wanted
@@ -250,7 +262,9 @@ class Session:
             if moved < STUCK * setup.solver.step:
                 self._blocked.add(name)
             if why == "force limit":
-                self._notices.append(f"the hand is not stronger than {setup.world[name].force_limit:g} k R: {label} stopped")
+                self._notices.append(
+                    f"the hand is not stronger than {setup.world[name].force_limit:g} k R: {label} stopped"
+                )
             elif why == "end of travel":
                 self._notices.append(f"{label}: end of travel")
             elif moved < STUCK * setup.solver.step:
@@ -258,11 +272,14 @@ class Session:
         if increment.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
             self._blocked.update(increment.moved)
             self._script = None
-            what = "a grain was squeezed flat" if increment.report.reason is StopReason.COLLAPSED else "the numbers blew up"
+            what = (
+                "a grain was squeezed flat"
+                if increment.report.reason is StopReason.COLLAPSED
+                else "the numbers blew up"
+            )
             self._notices.append(f"{what}: back to the state before this step. Draw back, or reset")
         self._remove_those_gone()
-        moved = increment.moved.get(self._drive.body, (0.0, 0.0))
-        self._follow(np.array(moved))
+        self._follow(np.array(increment.moved.get(self._drive.body, (0.0, 0.0))))
         self._record(increment)
         self._watch_for_clog()
 
@@ -275,6 +292,8 @@ class Session:
             self._out += int(gone.sum())
             self._engine.remove(gone)
             setup.packing = self._engine.packing
+            pairs, bodies = self._engine.contacts()
+            self._last = replace(self._last, grain_contacts=pairs, body_contacts=bodies)
 
     def _follow(self, moved: np.ndarray) -> None:
         """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
@@ -315,94 +334,50 @@ class Session:
             self._clear_since = self._stroke
         since = self._stroke - self._clear_since
         if since >= 2.0:
-            start = next(row for row in (rows[k] for k in range(len(rows))) if row.stroke >= self._clear_since)
-            if rows[len(rows) - 1].resisting > start.resisting and rows[len(rows) - 1].resisting > 0.0:
-                self._notices.append(f"clogged: {since / 2.0:.1f} diameters of stroke, nothing left")
+            start = next(
+                row
+                for row in (rows[k] for k in range(len(rows)))
+                if row.stroke >= self._clear_since
+            )
+            if (
+                rows[len(rows) - 1].resisting > start.resisting
+                and rows[len(rows) - 1].resisting > 0.0
+            ):
+                self._notices.append(
+                    f"clogged: {since / 2.0:.1f} diameters of stroke, nothing left"
+                )
 
     # -- what can be seen -----------------------------------------------------------------------------------------------------
 
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""
+        return take(self.view())
+
+    def view(self) -> View:
+        """What a snapshot is taken of."""
         setup = self._require()
-        packing = setup.packing
-        report = self._engine.progress()
-        last = self._last.report
-        shown = last if report is None else report
-        state = packing.state.copy()
-        return Frame(
-            scene=self.scene.name,
-            title=self.scene.title,
-            packing=self.packing,
+        return View(
+            scene=self.scene,
+            packing_kind=self.packing,
             seed=self.seed,
-            increment=len(self.history) - 1,
-            x=state[0],
-            y=state[1],
-            p=state[2],
-            q1=state[3],
-            q2=state[4],
-            rest_radius=packing.rest_radius.copy(),
-            poisson_ratio=packing.poisson_ratio.copy(),
-            contacts=self._contact_lines(packing),
-            bodies=tuple(_shape(body) for body in setup.world.bodies),
-            handles=tuple(self._handle_state(handle) for handle in setup.handles),
-            bounds=setup.bounds,
+            setup=setup,
+            engine=self._engine,
+            last=self._last,
+            history=self.history,
+            drive=self._drive,
+            targets=self._targets,
             stroke=self._stroke,
             grains_out=self._out,
-            energy=last.energy,
-            residual=last.residual,
-            tolerance=setup.solver.tolerance,
-            iterations=shown.iterations,
-            stop_reason=str(last.reason),
-            busy=self._engine.busy,
             protocol=self._script is not None,
             notices=tuple(self._notices),
-            curve_stroke=self.history.column("stroke"),
-            curve_force=self.history.column("resisting"),
-            curve_label=f"force on the {self._drive.label} [k R]",
-        )
-
-    def _contact_lines(self, packing: Packing) -> Contacts:
-        pairs, bodies = self._last.grain_contacts, self._last.body_contacts
-        if self._out:  # some of those grains may have left since: measure again
-            pairs, bodies = self._engine.contacts()
-        primitives, _ = self._require().world.primitives()
-        x0 = np.concatenate([packing.x[pairs.i], packing.x[bodies.grain]])
-        y0 = np.concatenate([packing.y[pairs.i], packing.y[bodies.grain]])
-        # On a disc the force acts at its centre; the line ends where grain and disc touch.
-        disc = primitives[bodies.primitive, 0] == DISC
-        length = np.hypot(packing.x[bodies.grain] - bodies.x, packing.y[bodies.grain] - bodies.y)
-        share = np.where(disc, primitives[bodies.primitive, 7] / np.maximum(length, 1e-12), 0.0)
-        end_x = bodies.x + share * (packing.x[bodies.grain] - bodies.x)
-        end_y = bodies.y + share * (packing.y[bodies.grain] - bodies.y)
-        return Contacts(
-            x0=x0,
-            y0=y0,
-            x1=np.concatenate([packing.x[pairs.i] + pairs.dx, end_x]),
-            y1=np.concatenate([packing.y[pairs.i] + pairs.dy, end_y]),
-            force=np.concatenate([pairs.normal_force, bodies.normal_force]),
-            rigid=np.concatenate([np.zeros(len(pairs.i), dtype=bool), np.ones(len(bodies.grain), dtype=bool)]),
-        )
-
-    def _handle_state(self, handle: Handle) -> HandleState:
-        setup = self._require()
-        body = setup.world[handle.body]
-        push = self._last.reactions[setup.world.index(handle.body)]
-        return HandleState(
-            name=handle.body,
-            label=handle.label,
-            x=body.position[0],
-            y=body.position[1],
-            target=self._targets.get(handle.body),
-            fx=-float(push[0]),
-            fy=-float(push[1]),
-            radius=handle.radius,
-            axis=body.axis,
         )
 
     def state_hash(self) -> str:
         """Hash of every bit of the packing and of where the bodies are."""
         setup = self._require()
-        return hashlib.sha256(setup.packing.hash().encode() + setup.world.placement().tobytes()).hexdigest()
+        return hashlib.sha256(
+            setup.packing.hash().encode() + setup.world.placement().tobytes()
+        ).hexdigest()
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""
@@ -416,7 +391,7 @@ class Session:
             converged=reasons == str(StopReason.CONVERGED),
             initial_grains=self._initial,
         )
-        return self.scene.checks(self._require(), self.settings, track)
+        return self.scene.checks(self._require(), track)
 
     # -- logs -----------------------------------------------------------------------------------------------------------------
 
@@ -425,7 +400,9 @@ class Session:
         if self.busy:
             raise RuntimeError("finish the increment before taking the log")
         scene, packing, seed, settings = self._first
-        return Log(scene, packing, seed, settings, tuple(self._commands), self._finished, self.state_hash())
+        return Log(
+            scene, packing, seed, settings, tuple(self._commands), self._finished, self.state_hash()
+        )
 
     def write_log(self, path: str) -> None:
         """Write the log whole or not at all."""
@@ -437,17 +414,9 @@ class Session:
         return self._setup
 
 
-def _shape(body: RigidBody) -> BodyShape:
-    """A body's shapes in the world, for drawing."""
-    discs = [(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs]
-    segments = [(*body.to_world([(x0, y0), (x1, y1)]).ravel(), radius) for x0, y0, x1, y1, radius in body.segments]
-    return BodyShape(
-        name=body.name,
-        role=body.role,
-        discs=np.array(discs, dtype=np.float64).reshape(-1, 3),
-        segments=np.array(segments, dtype=np.float64).reshape(-1, 5),
-        polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
-    )
+def _silent(text: str, share: float) -> None:
+    """Progress that nobody watches."""
+    del text, share
 
 
 def check_seed(seed: object) -> int:
@@ -455,21 +424,3 @@ def check_seed(seed: object) -> int:
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**63:
         raise InputError(f"the seed must be 0 or a positive whole number below 2^63, not {seed!r}")
     return seed
-
-
-def replay(log: Log, progress: Progress | None = None, slice_iterations: int = 400) -> Iterator[Session]:
-    """Run a log again; yields the session built, and after each increment. Raises InputError if the log does not fit the scene."""
-    session = Session(log.scene, log.packing, log.seed, log.settings)
-    session.build(progress)
-    yield session
-    waiting = deque(log.commands)
-    while True:
-        while waiting and waiting[0][0] == session.finished:
-            session.submit_exactly(waiting.popleft()[1])
-        if session.finished >= log.end:
-            session.settle()
-            return
-        while not session.advance(slice_iterations):
-            if session.idle:
-                raise InputError(f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}")
-        yield session

@@ -9,7 +9,18 @@ from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import MATERIAL, SOLVER, Handle, Outlet, Progress, Scene, Setup, Values, recipe, solver
+from scenes.scene import (
+    MATERIAL,
+    SOLVER,
+    Handle,
+    Outlet,
+    Progress,
+    Scene,
+    Setup,
+    Values,
+    recipe,
+    solver,
+)
 
 WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]
 PISTON = 1.6  # thickness of the piston [R]
@@ -25,17 +36,37 @@ class Hopper(Scene):
     about = "A piston pushes grains through an orifice a few grains wide. Watch arches form, carry force, and break."
     default_steps = 440
     parameters = (
-        Parameter("grains", 300, "", 20, 3000, "number of grains, near enough; the channel grows with it"),
-        Parameter("orifice", 3.0, "diameters", 0.3, 8.0, "width of the orifice in diameters of a large grain"),
-        Parameter("angle", 45.0, "deg", 10.0, 80.0, "angle of the funnel's sides from the horizontal"),
+        Parameter(
+            "grains", 300, "", 20, 3000, "number of grains, near enough; the channel grows with it"
+        ),
+        Parameter(
+            "orifice",
+            3.0,
+            "diameters",
+            0.3,
+            8.0,
+            "width of the orifice in diameters of a large grain",
+        ),
+        Parameter(
+            "angle", 45.0, "deg", 10.0, 80.0, "angle of the funnel's sides from the horizontal"
+        ),
         Parameter("width", 24.0, "R", 8.0, 80.0, "width of the channel"),
-        Parameter("packing_fraction", 0.84, "", 0.3, 1.0, "rest area of the grains over the area open to them, at the start"),
+        Parameter(
+            "packing_fraction",
+            0.84,
+            "",
+            0.3,
+            1.0,
+            "rest area of the grains over the area open to them, at the start",
+        ),
         Parameter("stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke"),
         *MATERIAL,
         *SOLVER,
     )
 
-    def build(self, values: Values, packing: str, seed: int, progress: Progress | None = None) -> Setup:
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
         grains = recipe(values, packing)
         fraction = float(values["packing_fraction"])
         half_width = 0.5 * float(values["width"])
@@ -47,19 +78,40 @@ class Hopper(Scene):
             raise InputError("the orifice is wider than the channel: lower orifice or raise width")
         neck = lip.y + (half_width - lip.x) * math.tan(angle)
         funnel = (half_width + lip.x) * (neck - lip.y)
-        channel = (float(values["grains"]) * grains.mean_area() / fraction - funnel) / (2.0 * half_width)
+        channel = (float(values["grains"]) * grains.mean_area() / fraction - funnel) / (
+            2.0 * half_width
+        )
         if channel < 4.0:
-            raise InputError("too few grains to fill the funnel: raise grains, or lower width or angle")
+            raise InputError(
+                "too few grains to fill the funnel: raise grains, or lower width or angle"
+            )
         top = neck + channel
         brim = top + LIFT + PISTON
         right: list[Point] = [(lip.x, lip.y), (half_width, neck), (half_width, brim)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
-        outline: list[Point] = [right[0], right[1], (half_width, top), (-half_width, top), left[1], left[2]]
+        outline: list[Point] = [
+            right[0],
+            right[1],
+            (half_width, top),
+            (-half_width, top),
+            left[1],
+            left[2],
+        ]
         piston = RigidBody(
             "piston",
             "piston",
             position=(0.0, top),
-            polygons=[(((-half_width, 0.0), (half_width, 0.0), (half_width, PISTON), (-half_width, PISTON)), 0.0)],
+            polygons=[
+                (
+                    (
+                        (-half_width, 0.0),
+                        (half_width, 0.0),
+                        (half_width, PISTON),
+                        (-half_width, PISTON),
+                    ),
+                    0.0,
+                )
+            ],
             axis=(0.0, -1.0),
             travel=(-LIFT, channel - 1.0),
         )
@@ -71,7 +123,14 @@ class Hopper(Scene):
                 wall("gate", [(-lip.x, lip.y), (lip.x, lip.y)], WALL),
             ]
         )
-        packed = pack(grains, seed=seed, outline=outline, world=world, packing_fraction=fraction, progress=progress)
+        packed = pack(
+            grains,
+            seed=seed,
+            outline=outline,
+            world=world,
+            packing_fraction=fraction,
+            progress=progress,
+        )
         world.remove("gate")
         return Setup(
             packing=packed,

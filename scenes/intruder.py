@@ -21,18 +21,32 @@ class Intruder(Scene):
     name = "intruder"
     title = "Intruder"
     question = "How hard is it to drag a disc through grains that cannot get out of the way?"
-    about = "A closed box of grains and a disc in your hand. Regular grains lock into force chains; a few auxetic ones let them break."
+    about = (
+        "A closed box of grains and a disc in your hand. "
+        "Regular grains lock into force chains; a few auxetic ones let them break."
+    )
     default_steps = 400
     parameters = (
-        Parameter("grains", 600, "", 50, 5000, "number of grains, near enough; the box grows with it"),
+        Parameter(
+            "grains", 600, "", 50, 5000, "number of grains, near enough; the box grows with it"
+        ),
         Parameter("intruder_radius", 5.7, "R", 0.5, 20.0, "radius of the intruder"),
-        Parameter("packing_fraction", 0.88, "", 0.3, 1.0, "rest area of the grains over the area open to them"),
+        Parameter(
+            "packing_fraction",
+            0.88,
+            "",
+            0.3,
+            1.0,
+            "rest area of the grains over the area open to them",
+        ),
         Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag"),
         *MATERIAL,
         *SOLVER,
     )
 
-    def build(self, values: Values, packing: str, seed: int, progress: Progress | None = None) -> Setup:
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
         grains = recipe(values, packing)
         radius = float(values["intruder_radius"])
         fraction = float(values["packing_fraction"])
@@ -40,18 +54,31 @@ class Intruder(Scene):
         height = math.sqrt(area / ASPECT)
         width = area / height
         if 2.0 * radius + 2.0 * MARGIN > min(width, height):
-            raise InputError("the intruder does not fit into the box: raise grains or lower intruder_radius")
+            raise InputError(
+                "the intruder does not fit into the box: raise grains or lower intruder_radius"
+            )
         outline: list[Point] = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
         world = RigidWorld(
             [
                 wall("walls", outline, WALL, closed=True),
                 RigidBody(
-                    "intruder", "intruder", position=(radius + MARGIN, 0.5 * height), discs=[(0.0, 0.0, radius)], held=True
+                    "intruder",
+                    "intruder",
+                    position=(radius + MARGIN, 0.5 * height),
+                    discs=[(0.0, 0.0, radius)],
+                    held=True,
                 ),
             ]
         )
         return Setup(
-            packing=pack(grains, seed=seed, outline=outline, world=world, packing_fraction=fraction, progress=progress),
+            packing=pack(
+                grains,
+                seed=seed,
+                outline=outline,
+                world=world,
+                packing_fraction=fraction,
+                progress=progress,
+            ),
             world=world,
             solver=solver(values),
             handles=(Handle("intruder", "intruder", (1.0, 0.0), radius),),
@@ -67,5 +94,3 @@ class Intruder(Scene):
         if ahead > end + 1e-9:
             return None
         return {"intruder": (ahead, body.home[1])}
-
-

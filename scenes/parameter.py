@@ -23,7 +23,7 @@ class Parameter:
 
     @property
     def kind(self) -> str:
-        """"switch", "whole number" or "number"."""
+        """ "switch", "whole number" or "number"."""
         if isinstance(self.default, bool):
             return "switch"
         return "whole number" if isinstance(self.default, int) else "number"
@@ -34,7 +34,11 @@ class Parameter:
             if not isinstance(value, bool):
                 raise InputError(f"{self.name} is a switch: give true or false, not {value!r}")
             return value
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, (int, float))
+            or not math.isfinite(value)
+        ):
             raise InputError(f"{self.name} must be a {self.kind}, not {value!r}")
         if isinstance(self.default, int):
             if value != int(value):
@@ -44,14 +48,25 @@ class Parameter:
             value = float(value)
         if not self.low <= value <= self.high:
             unit = f" {self.unit}" if self.unit else ""
-            raise InputError(f"{self.name} must lie between {self.low:g} and {self.high:g}{unit}; {value:g} does not")
+            raise InputError(
+                f"{self.name} must lie between {self.low:g} and {self.high:g}{unit}; {value:g} does not"
+            )
         return value
 
     def parse(self, text: str) -> Value:
         """The value that a person typed. Raises InputError as ``check`` does."""
         plain = text.strip().lower()
         if isinstance(self.default, bool):
-            words = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+            words = {
+                "true": True,
+                "on": True,
+                "yes": True,
+                "1": True,
+                "false": False,
+                "off": False,
+                "no": False,
+                "0": False,
+            }
             if plain not in words:
                 raise InputError(f"{self.name} is a switch: give true or false, not {text!r}")
             return words[plain]

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core import observables
 from core.errors import InputError
@@ -42,9 +43,10 @@ class Outlet:
     y: float
     opening: float
 
-    def gone(self, packing: Packing) -> np.ndarray:
+    def gone(self, packing: Packing) -> NDArray[np.bool_]:
         """True for the grains that have left, (N,)."""
-        return packing.y < self.y
+        below: NDArray[np.bool_] = packing.y < self.y
+        return below
 
 
 @dataclass
@@ -101,7 +103,9 @@ class Scene(ABC):
                 close = difflib.get_close_matches(name, by_name, n=1)
                 hint = f"did you mean {close[0]}?" if close else f"there are: {', '.join(by_name)}"
                 raise InputError(f"scene {self.name} has no parameter {name!r}; {hint}")
-            values[name] = by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
+            values[name] = (
+                by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
+            )
         return values
 
     def check_packing(self, packing: str) -> str:
@@ -111,14 +115,16 @@ class Scene(ABC):
         return packing
 
     @abstractmethod
-    def build(self, values: Values, packing: str, seed: int, progress: Progress | None = None) -> Setup:
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
         """Set the scene up. ``progress`` is told the share done. Raises InputError if the parameters do not go together."""
 
     @abstractmethod
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end."""
 
-    def checks(self, setup: Setup, values: Values, track: Track) -> list[Check]:
+    def checks(self, setup: Setup, track: Track) -> list[Check]:
         """Claims that must hold for any run of any scene; subclasses add their own."""
         return [_grains_kept(setup, track), _nothing_inside(setup), _converged(track)]
 
@@ -127,12 +133,33 @@ MATERIAL = (
     Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
     Parameter("regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains"),
     Parameter("auxetic_poisson_ratio", -0.8, "", -0.99, -0.01, "Poisson's ratio of auxetic grains"),
-    Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "stiffness of a contact over that of a grain: higher is harder and slower"),
+    Parameter(
+        "contact_stiffness",
+        50.0,
+        "k",
+        5.0,
+        1000.0,
+        "stiffness of a contact over that of a grain: higher is harder and slower",
+    ),
 )
 SOLVER = (
     Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment"),
-    Parameter("tolerance", 1e-2, "", 1e-8, 0.3, "largest residual force over mean contact force at the end of an increment"),
-    Parameter("max_iterations", 8000, "", 10, 1_000_000, "force evaluations after which an increment ends unconverged, and says so"),
+    Parameter(
+        "tolerance",
+        1e-2,
+        "",
+        1e-8,
+        0.3,
+        "largest residual force over mean contact force at the end of an increment",
+    ),
+    Parameter(
+        "max_iterations",
+        8000,
+        "",
+        10,
+        1_000_000,
+        "force evaluations after which an increment ends unconverged, and says so",
+    ),
 )
 
 
@@ -150,7 +177,9 @@ def recipe(values: Values, packing: str) -> Recipe:
 def solver(values: Values) -> Settings:
     """How carefully ``values`` ask to relax."""
     return Settings(
-        step=float(values["step"]), tolerance=float(values["tolerance"]), max_iterations=int(values["max_iterations"])
+        step=float(values["step"]),
+        tolerance=float(values["tolerance"]),
+        max_iterations=int(values["max_iterations"]),
     )
 
 
@@ -163,7 +192,11 @@ def _grains_kept(setup: Setup, track: Track) -> Check:
         lowest = min(y for _, y in setup.outline)
         astray &= packing.y > lowest + 1e-9
     stray = int(astray.sum())
-    return Check("no grain is lost and none has passed a wall", counted and stray == 0, f"{out} left by the outlet, {stray} astray")
+    return Check(
+        "no grain is lost and none has passed a wall",
+        counted and stray == 0,
+        f"{out} left by the outlet, {stray} astray",
+    )
 
 
 def _nothing_inside(setup: Setup) -> Check:
@@ -173,14 +206,22 @@ def _nothing_inside(setup: Setup) -> Check:
     contacts = observables.body_contacts(packing, primitives)
     if len(contacts.grain):
         worst = float(np.max(contacts.overlap / packing.rest_radius[contacts.grain]))
-    return Check("no grain sinks into a body by half its radius", worst < 0.5, f"deepest overlap {worst:.3f} of a radius")
+    return Check(
+        "no grain sinks into a body by half its radius",
+        worst < 0.5,
+        f"deepest overlap {worst:.3f} of a radius",
+    )
 
 
 def _converged(track: Track) -> Check:
     if not len(track.converged):
         return Check("at least nine of ten increments converge", None, "nothing has moved yet")
     share = float(np.mean(track.converged))
-    return Check("at least nine of ten increments converge", share >= 0.9, f"{share:.1%} of {len(track.converged)} increments")
+    return Check(
+        "at least nine of ten increments converge",
+        share >= 0.9,
+        f"{share:.1%} of {len(track.converged)} increments",
+    )
 
 
 def mean(values: Sequence[float] | np.ndarray) -> float:

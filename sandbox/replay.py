@@ -1,0 +1,35 @@
+"""A log run again: the same commands after the same increments, hence the same state bits."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator
+
+from core.errors import InputError
+from sandbox.log import Log
+from sandbox.session import Progress, Session
+
+
+def replay(
+    log: Log, progress: Progress | None = None, slice_iterations: int = 400
+) -> Iterator[Session]:
+    """Yield the session built, then again after each increment.
+
+    Raises InputError if the log does not fit the scene.
+    """
+    session = Session(log.scene, log.packing, log.seed, log.settings)
+    session.build(progress)
+    yield session
+    waiting = deque(log.commands)
+    while True:
+        while waiting and waiting[0][0] == session.finished:
+            session.submit_exactly(waiting.popleft()[1])
+        if session.finished >= log.end:
+            session.settle()
+            return
+        while not session.advance(slice_iterations):
+            if session.idle:
+                raise InputError(
+                    f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
+                )
+        yield session

@@ -1,0 +1,124 @@
+"""From a running session to a frame: an immutable copy of what can be seen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.packing import Packing
+from core.quasistatic import Increment, Quasistatic
+from core.rigid import Point, RigidBody
+from core.rigid_contacts import DISC
+from sandbox.frame import BodyShape, Contacts, Frame, HandleState
+from sandbox.history import History
+from scenes.scene import Handle, Scene, Setup
+
+
+@dataclass(frozen=True)
+class View:
+    """The parts of a session that a frame shows."""
+
+    scene: Scene
+    packing_kind: str
+    seed: int
+    setup: Setup
+    engine: Quasistatic
+    last: Increment
+    history: History
+    drive: Handle
+    targets: Mapping[str, Point]
+    stroke: float
+    grains_out: int
+    protocol: bool
+    notices: tuple[str, ...]
+
+
+def take(view: View) -> Frame:
+    """A snapshot of ``view`` that shares nothing with it."""
+    packing = view.setup.packing
+    under_way = view.engine.progress()
+    last = view.last.report
+    state = packing.state.copy()
+    return Frame(
+        scene=view.scene.name,
+        title=view.scene.title,
+        packing=view.packing_kind,
+        seed=view.seed,
+        increment=len(view.history) - 1,
+        x=state[0],
+        y=state[1],
+        p=state[2],
+        q1=state[3],
+        q2=state[4],
+        rest_radius=packing.rest_radius.copy(),
+        poisson_ratio=packing.poisson_ratio.copy(),
+        contacts=_contact_lines(view, packing),
+        bodies=tuple(_shape(body) for body in view.setup.world.bodies),
+        handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
+        bounds=view.setup.bounds,
+        stroke=view.stroke,
+        grains_out=view.grains_out,
+        energy=last.energy,
+        residual=last.residual,
+        tolerance=view.setup.solver.tolerance,
+        iterations=(last if under_way is None else under_way).iterations,
+        stop_reason=str(last.reason),
+        busy=under_way is not None,
+        protocol=view.protocol,
+        notices=view.notices,
+        curve_stroke=view.history.curve[0],
+        curve_force=view.history.curve[1],
+        curve_label=f"force on the {view.drive.label} [k R]",
+    )
+
+
+def _contact_lines(view: View, packing: Packing) -> Contacts:
+    pairs, bodies = view.last.grain_contacts, view.last.body_contacts
+    primitives, _ = view.setup.world.primitives()
+    grain_x, grain_y = packing.x[bodies.grain], packing.y[bodies.grain]
+    # On a disc the force acts at its centre; the line ends where grain and disc touch.
+    disc = primitives[bodies.primitive, 0] == DISC
+    length = np.hypot(grain_x - bodies.x, grain_y - bodies.y)
+    share = np.where(disc, primitives[bodies.primitive, 7] / np.maximum(length, 1e-12), 0.0)
+    return Contacts(
+        x0=np.concatenate([packing.x[pairs.i], grain_x]),
+        y0=np.concatenate([packing.y[pairs.i], grain_y]),
+        x1=np.concatenate([packing.x[pairs.i] + pairs.dx, bodies.x + share * (grain_x - bodies.x)]),
+        y1=np.concatenate([packing.y[pairs.i] + pairs.dy, bodies.y + share * (grain_y - bodies.y)]),
+        force=np.concatenate([pairs.normal_force, bodies.normal_force]),
+        rigid=np.repeat([False, True], [len(pairs.i), len(bodies.grain)]),
+    )
+
+
+def _handle_state(view: View, handle: Handle) -> HandleState:
+    body = view.setup.world[handle.body]
+    push = view.last.reactions[view.setup.world.index(handle.body)]
+    return HandleState(
+        name=handle.body,
+        label=handle.label,
+        x=body.position[0],
+        y=body.position[1],
+        target=view.targets.get(handle.body),
+        fx=-float(push[0]),
+        fy=-float(push[1]),
+        radius=handle.radius,
+        axis=body.axis,
+    )
+
+
+def _shape(body: RigidBody) -> BodyShape:
+    """A body's shapes in the world, for drawing."""
+    discs = [(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs]
+    segments = [
+        (*body.to_world([(x0, y0), (x1, y1)]).ravel(), radius)
+        for x0, y0, x1, y1, radius in body.segments
+    ]
+    return BodyShape(
+        name=body.name,
+        role=body.role,
+        discs=np.array(discs, dtype=np.float64).reshape(-1, 3),
+        segments=np.array(segments, dtype=np.float64).reshape(-1, 5),
+        polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
+    )
