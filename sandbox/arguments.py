@@ -179,37 +179,14 @@ def check_different(files: dict[str, Path | None]) -> None:
             raise InputError(f"{earlier} and {option} name the same file {path}: choose two")
 
 
-def assignments(scene: Any, texts: Sequence[str]) -> dict[str, object]:
-    """``NAME=VALUE`` words to the complete, checked settings of ``scene``."""
-    parameters = {parameter.name: parameter for parameter in scene.parameters}
-    overrides: dict[str, object] = {}
+def assignments(texts: Sequence[str]) -> dict[str, str]:
+    """``NAME=VALUE`` words to names and values, still as typed: the scene knows what they mean."""
+    values: dict[str, str] = {}
     for text in texts:
         name, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or not name or not value:
-            raise InputError(f"--set {text}: write NAME=VALUE, such as --set {_example(scene)}")
-        if name not in parameters:
-            raise InputError(
-                f"--set {text}: {scene.name} has no parameter {name!r}"
-                f"{did_you_mean(name, parameters)}: it has {', '.join(parameters)}"
-            )
-        if name in overrides:
+        if not (equals and name and value):
+            raise InputError(f"--set {text}: write NAME=VALUE, such as --set step=0.02")
+        if name in values:
             raise InputError(f"--set {text}: {name} is set twice")
-        try:
-            overrides[name] = parameters[name].parse(value)
-        except InputError as error:
-            raise InputError(f"--set {text}: {error}") from error
-    return dict(scene.settings(overrides))
-
-
-def packing(scene: Any, name: str) -> str:
-    """The name of one of the packings of ``scene``."""
-    if name not in scene.packings:
-        raise InputError(
-            f"--packing {name}: {scene.name} has no such packing"
-            f"{did_you_mean(name, scene.packings)}: it has {', '.join(scene.packings)}"
-        )
-    return name
-
-
-def _example(scene: Any) -> str:
-    return next((f"{p.name}={p.default}" for p in scene.parameters), "radius=5.7")
+        values[name] = value
+    return values

@@ -26,6 +26,7 @@ class Cardboard:
         self.history = self
         self.slices = 0
         self.asked_for_frames = 0
+        self.idle_after: int | None = None
         self.on_increment: Callable[[int], None] = lambda increment: None
 
     @property
@@ -34,11 +35,17 @@ class Cardboard:
 
     def advance(self, max_iterations: int) -> bool:
         assert max_iterations == record.SLICE
+        if self.idle:
+            return False
         self.slices += 1
         if self.slices % 2:
             return False
         self.on_increment(self.increments)
         return True
+
+    @property
+    def idle(self) -> bool:
+        return self.increments == self.idle_after
 
     def frame(self) -> int:
         self.asked_for_frames += 1
@@ -48,7 +55,10 @@ class Cardboard:
         return ["increment"]
 
     def rows(self) -> Iterator[tuple[int]]:
-        return ((i + 1,) for i in range(self.increments))
+        return ((i,) for i in range(len(self)))
+
+    def __len__(self) -> int:
+        return self.increments + 1
 
 
 @pytest.fixture
@@ -67,24 +77,22 @@ def run(session: Any, steps: int, film: Path | None, table: Path | None) -> Outc
 
 def test_a_frame_and_a_row_per_increment(tmp_path: Path, session: Cardboard) -> None:
     film, table = tmp_path / "film.gif", tmp_path / "run.csv"
-    assert run(session, 5, film, table) == Outcome(5, 5, interrupted=False)
+    assert run(session, 5, film, table) == Outcome(5, 5, 6, interrupted=False)
     levels = [int(frame[0, 0, 0]) for frame in imageio.v2.mimread(film)]
     assert levels == [40, 80, 120, 160, 200]
-    assert table.read_text().split() == ["increment", "1", "2", "3", "4", "5"]
+    assert table.read_text().split() == ["increment", "0", "1", "2", "3", "4", "5"]
 
 
 def test_without_a_film_nothing_is_drawn(tmp_path: Path, session: Cardboard) -> None:
     table = tmp_path / "run.csv"
-    assert run(session, 5, None, table) == Outcome(5, 0, interrupted=False)
+    assert run(session, 5, None, table) == Outcome(5, 0, 6, interrupted=False)
     assert session.asked_for_frames == 0
 
 
-def test_the_run_may_end_before_its_steps(tmp_path: Path, session: Cardboard) -> None:
-    output = Output(tmp_path / "film.mp4", None, SIZE)
-    steps = iter([True, True, False])
-    cardboard: Any = session
-    outcome = record.run(cardboard, lambda: next(steps), 9, output)
-    assert outcome == Outcome(2, 2, interrupted=False)
+def test_the_run_ends_with_its_protocol(tmp_path: Path, session: Cardboard) -> None:
+    session.idle_after = 2
+    outcome = run(session, 9, tmp_path / "film.mp4", None)
+    assert (outcome.increments, outcome.frames, outcome.interrupted) == (2, 2, False)
 
 
 def test_ctrl_c_keeps_what_was_done(tmp_path: Path, session: Cardboard) -> None:
@@ -108,7 +116,7 @@ def test_ctrl_c_before_the_first_increment_writes_nothing(
 
     session.on_increment = press
     outcome = run(session, 9, tmp_path / "film.mp4", tmp_path / "run.csv")
-    assert outcome == Outcome(0, 0, interrupted=True)
+    assert (outcome.increments, outcome.frames, outcome.interrupted) == (0, 0, True)
     assert not list(tmp_path.iterdir())
 
 

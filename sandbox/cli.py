@@ -1,0 +1,315 @@
+"""The command line: list, play, record, replay.
+
+Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
+before anything is compiled.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from core.errors import InputError
+from sandbox import __version__, arguments
+from sandbox.arguments import Parser, argument
+
+if TYPE_CHECKING:
+    from sandbox.session import Session
+    from sandbox.views.record import Outcome, Output
+
+PROGRAM = "python -m sandbox"
+FILM_SUFFIXES = (".mp4", ".gif", ".png")
+
+OK = 0
+DIFFERENT = 1  # a replay came out otherwise than its log says
+USER_MISTAKE = 2
+INTERRUPTED = 130  # as shells count: 128 + SIGINT
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return the exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        options = parse(words)
+        command: Callable[[argparse.Namespace], int] = options.run
+        return command(options)
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return USER_MISTAKE
+    except KeyboardInterrupt:
+        print("stopped: nothing was written", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read the output (head, a pager) has seen enough. Python flushes once more at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return OK
+
+
+def parse(words: Sequence[str]) -> argparse.Namespace:
+    """The options of the command, with ``run`` the function that carries it out."""
+    parser, commands = _parsers()
+    first = words[0] if words else "play"
+    if not first.startswith("-") and first not in commands:
+        raise InputError(f"unknown command {first!r}{_meant_command(first, commands)}")
+    options, leftovers = parser.parse_known_args(words or ["play"])
+    if "command" not in options or options.command is None:
+        parser.refuse_leftovers(leftovers)
+        raise InputError(f"no command given: use {', '.join(commands)}; see {PROGRAM} --help")
+    commands[options.command].refuse_leftovers(leftovers)
+    return options
+
+
+def _parsers() -> tuple[Parser, dict[str, Parser]]:
+    parser = Parser(
+        prog=PROGRAM,
+        description="Push and pull deformable grains, regular and auxetic, and watch the forces.",
+        epilog="Without a command: play, starting with the menu of scenes.",
+    )
+    parser.add_argument("--version", action="version", version=f"auxetic-sandbox {__version__}")
+    choices = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
+    commands: dict[str, Parser] = {}
+
+    def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> Parser:
+        commands[name] = choices.add_parser(name, help=text, description=text)
+        commands[name].set_defaults(run=run)
+        return commands[name]
+
+    listing = command("list", _list, "Print the scenes, their packings and their parameters.")
+    listing.add_argument("--json", action="store_true", help="print the same as JSON")
+
+    play = command("play", _play, "Open a window; grab a handle with the mouse and move it.")
+    play.add_argument("scene", nargs="?", metavar="SCENE", help="without it: a menu of scenes")
+    _add_scene_options(play)
+    play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
+    _add_size(play)
+    play.add_argument(
+        "--scale",
+        type=argument(arguments.number(0.5, 4.0)),
+        metavar="FACTOR",
+        help="size of letters and controls, 0.5 to 4 (default: by the screen's size)",
+    )
+    play.add_argument(
+        "--theme",
+        type=argument(arguments.one_of("dark", "light")),
+        default="dark",
+        help="dark (default), or light for a bright room",
+    )
+
+    record = command("record", _record, "Run a scene by itself, and write a film, a table or both.")
+    record.add_argument("scene", metavar="SCENE", help="one of the names that `list` prints")
+    record.add_argument(
+        "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"
+    )
+    record.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_scene_options(record)
+    record.add_argument(
+        "--steps",
+        type=argument(arguments.whole_number(1, arguments.MOST_STEPS)),
+        metavar="N",
+        help="increments to run, a frame each (default: the scene's whole protocol)",
+    )
+    _add_size(record)
+    record.add_argument(
+        "--fps",
+        type=argument(arguments.number(1.0, max(arguments.HIGHEST_FPS.values()))),
+        default=30.0,
+        metavar="N",
+        help="frames a second (default: 30)",
+    )
+
+    replay = command("replay", _replay, "Repeat a logged run; say whether it came out the same.")
+    replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
+    replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
+    replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    return parser, commands
+
+
+def _add_scene_options(parser: Parser) -> None:
+    parser.add_argument(
+        "--packing",
+        default="mixed",
+        metavar="NAME",
+        help="kinds of grains: regular, auxetic or mixed (default)",
+    )
+    parser.add_argument(
+        "--seed",
+        type=argument(arguments.whole_number(0, arguments.LARGEST_SEED)),
+        default=1,
+        metavar="N",
+        help="of the random packing (default: 1)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="set a parameter of the scene; may be repeated",
+    )
+
+
+def _add_size(parser: Parser) -> None:
+    parser.add_argument(
+        "--size",
+        type=argument(arguments.size),
+        default=(1280, 720),
+        metavar="WxH",
+        help="in pixels (default: 1280x720)",
+    )
+
+
+def _meant_command(word: str, commands: dict[str, Parser]) -> str:
+    """People also write the name of a scene where a command is due."""
+    from scenes import registry
+
+    scenes = registry.names()
+    meant = arguments.nearest(word, [*commands, *scenes])
+    if meant in scenes:
+        return f" (did you mean play {meant}?)"
+    return f" (did you mean {meant}?)" if meant else f": use {', '.join(commands)}"
+
+
+def _list(options: argparse.Namespace) -> int:
+    from sandbox import listing
+    from scenes import registry
+
+    scenes = [registry.get(name) for name in registry.names()]
+    print(listing.as_json(scenes) if options.json else listing.as_text(scenes), flush=True)
+    return OK
+
+
+def _play(options: argparse.Namespace) -> int:
+    from sandbox import environment
+
+    log = arguments.output_file("--log", options.log, [".jsonl"]) if options.log else None
+    if options.scene is None:
+        if options.set:
+            raise InputError("--set needs a scene: write play SCENE --set NAME=VALUE")
+        _check_packing_of_some_scene(options.packing)
+        settings: dict[str, object] = {}
+    else:
+        settings = dict(_session(options).settings)
+    environment.require_pygame_ce()
+    environment.require_display()
+    from sandbox.views import window
+
+    return window.run(
+        options.scene,
+        options.packing,
+        options.seed,
+        settings,
+        log=log,
+        size=options.size,
+        scale=options.scale,
+        theme=options.theme,
+    )
+
+
+def _record(options: argparse.Namespace) -> int:
+    output = _output(options, options.size, options.fps)
+    if output is None:
+        raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
+    session = _session(options)
+    steps: int = options.steps or session.scene.default_steps
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.views.record import record
+
+    with stop_like_ctrl_c():
+        outcome = record(session, steps, output)
+    _report(session, outcome, output)
+    return INTERRUPTED if outcome.interrupted else OK
+
+
+def _replay(options: argparse.Namespace) -> int:
+    from sandbox.log import read_log
+
+    output = _output(options, (1280, 720), 30.0)
+    log = read_log(options.log)
+    from sandbox.session import Session
+
+    Session(log.scene, log.packing, log.seed, log.settings)  # finds mistakes before any work
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.views.record import repeat
+
+    with stop_like_ctrl_c():
+        session, outcome = repeat(log, output)
+    _report(session, outcome, output)
+    if outcome.interrupted:
+        return INTERRUPTED
+    same = session.state_hash() == log.hash
+    print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
+    return OK if same else DIFFERENT
+
+
+def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> Output | None:
+    """Where to write, checked; None if nothing is asked for."""
+    from sandbox.views.record import Output
+
+    film: Path | None = None
+    table: Path | None = None
+    if options.out:
+        from sandbox import environment
+
+        film = arguments.output_file("--out", options.out, FILM_SUFFIXES)
+        arguments.check_fps(fps, film.suffix.lower())
+        environment.require_pygame_ce()
+    if options.data:
+        table = arguments.output_file("--data", options.data, [".csv"])
+    arguments.check_different({"--out": film, "--data": table})
+    return Output(film, table, size, fps) if film or table else None
+
+
+def _session(options: argparse.Namespace) -> Session:
+    """The session that the options describe, checked but not built."""
+    from sandbox.session import Session
+
+    settings = arguments.assignments(options.set)
+    return Session(options.scene, options.packing, options.seed, settings)
+
+
+def _check_packing_of_some_scene(name: str) -> None:
+    from scenes import registry
+
+    known = {
+        packing: None for scene in registry.names() for packing in registry.get(scene).packings
+    }
+    if name not in known:
+        raise InputError(f"unknown packing {name!r}: choose {', '.join(known)}")
+
+
+def _report(session: Session, outcome: Outcome, output: Output | None) -> None:
+    """What a finished run came to, in one line, and the scene's own checks."""
+    if outcome.interrupted:
+        print(_interrupted(outcome, output), file=sys.stderr)
+        if not outcome.increments:
+            return
+    print(_summary(session, outcome))
+    for check in session.checks():
+        verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
+        print(f"  {verdict:<5}  {check.name}: {check.measured}")
+
+
+def _interrupted(outcome: Outcome, output: Output | None) -> str:
+    written = []
+    if outcome.increments and output and output.film:
+        written.append(f"{outcome.frames} frames to {output.film}")
+    if outcome.increments and output and output.table:
+        written.append(f"{outcome.rows} rows to {output.table}")
+    what = f"wrote {' and '.join(written)}" if written else "nothing was written"
+    return f"stopped after {outcome.increments} increments: {what}"
+
+
+def _summary(session: Session, outcome: Outcome) -> str:
+    # Row 0 is the state before the hand has moved.
+    reasons = session.history.column("stop_reason")[1:]
+    forces = session.history.column("resisting")[1:]
+    unfinished = sum(str(reason) != "converged" for reason in reasons)
+    mean = float(forces.mean()) if len(forces) else 0.0
+    return (
+        f"{outcome.frames} frames, {outcome.increments} increments "
+        f"({unfinished or 'none'} did not converge), "
+        f"mean {session.frame().curve_label}: {mean:.4g}, state {session.state_hash()}"
+    )

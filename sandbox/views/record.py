@@ -1,0 +1,150 @@
+"""Runs a session without a window, increment by increment, and writes down what it sees."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sandbox.interrupts import deferred
+from sandbox.views.data import write_csv
+from sandbox.views.video import VideoWriter
+
+if TYPE_CHECKING:
+    from sandbox.log import Log
+    from sandbox.session import Session
+
+# Relaxation steps between two looks at the clock and at Ctrl-C: a fraction of a second.
+SLICE = 400
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a run is written to; at least one of the two."""
+
+    film: Path | None
+    table: Path | None
+    size: tuple[int, int] = (1280, 720)
+    fps: float = 30.0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run came to. The table has a row more than there are increments: that of the start."""
+
+    increments: int
+    frames: int
+    rows: int
+    interrupted: bool
+
+
+def record(session: Session, steps: int, output: Output) -> Outcome:
+    """Build the session, run its scripted protocol for ``steps`` increments, write the output.
+
+    One frame an increment. Ctrl-C, or the end of the protocol, ends the run early; everything done
+    until then is written.
+    """
+    from sandbox.commands import Protocol
+
+    with build_bar() as progress:
+        session.build(progress)
+    session.submit(Protocol(True))
+    return run(session, lambda: finish_increment(session), steps, output)
+
+
+def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
+    """Run a log again, one frame an increment; the session at its end, and what it came to."""
+    from sandbox.replay import replay
+
+    with build_bar() as progress:
+        states = replay(log, progress)
+        session = next(states)
+    outcome = run(session, lambda: next(states, None) is not None, log.end, output)
+    if not outcome.interrupted:
+        next(states, None)  # commands that came after the last increment
+    return session, outcome
+
+
+def finish_increment(session: Session) -> bool:
+    """Work until an increment is done; False if there is nothing to do any more.
+
+    Ctrl-C is heard between two slices, when no increment is half booked.
+    """
+    while True:
+        with deferred():
+            if session.advance(SLICE):
+                return True
+            if session.idle:
+                return False
+
+
+def run(session: Session, step: Callable[[], bool], steps: int, output: Output | None) -> Outcome:
+    """Call ``step`` until it returns False, or ``steps`` times; write a frame after each.
+
+    The session is built already. The table is written at the end, also after Ctrl-C.
+    """
+    from tqdm import tqdm
+
+    film, table = (output.film, output.table) if output else (None, None)
+    draw = _drawer(output) if output and film else None
+    writer = VideoWriter(film, output.size, output.fps) if output and film else None
+    increments = 0
+    interrupted = False
+    try:
+        with (
+            writer or nullcontext(),
+            tqdm(total=steps, desc=session.scene.name, unit="increment", **_bar_options()) as bar,
+        ):
+            while increments < steps and step():
+                if writer is not None and draw is not None:
+                    writer.write(draw(session.frame()))
+                with deferred():
+                    increments += 1
+                    bar.update()
+    except KeyboardInterrupt:
+        interrupted = True
+    if table and increments:
+        write_csv(table, session.history)
+    return Outcome(increments, writer.frames if writer else 0, len(session.history), interrupted)
+
+
+@contextmanager
+def build_bar() -> Iterator[Callable[[str, float], None]]:
+    """A progress bar to pass to ``Session.build``."""
+    from tqdm import tqdm
+
+    with tqdm(
+        total=1.0, bar_format="{desc:<42.42} {percentage:3.0f}%|{bar}| {elapsed}", **_bar_options()
+    ) as bar:
+
+        def progress(text: str, fraction: float) -> None:
+            bar.set_description_str(text, refresh=False)
+            bar.update(max(0.0, min(fraction, 1.0) - bar.n))
+
+        yield progress
+        bar.update(max(0.0, 1.0 - bar.n))
+
+
+def _drawer(output: Output) -> Callable[[Any], Any]:
+    from sandbox.environment import prepare_headless
+
+    prepare_headless()
+    from sandbox.draw.render import Renderer
+
+    # Letters and lines keep their share of the picture whatever its size.
+    scale = max(0.5, min(output.size[0] / 1280, output.size[1] / 720))
+    return Renderer(size=output.size, scale=scale).image
+
+
+def _bar_options() -> dict[str, Any]:
+    """A line every ten seconds is enough where nobody watches the bar move."""
+    watched = sys.stderr.isatty()
+    return {
+        "file": sys.stderr,
+        "dynamic_ncols": watched,
+        "ncols": None if watched else 100,
+        "mininterval": 0.1 if watched else 10.0,
+    }
