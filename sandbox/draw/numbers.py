@@ -69,7 +69,7 @@ class RoundScale:
     def follow(self, largest: float) -> float:
         """Take in the largest value of the moment; returns the top."""
         if math.isfinite(largest) and largest > 0.0:
-            wanted = nice_ceiling(largest)
+            wanted = nice_ceiling(largest, FINER)
             if wanted > self.top or largest < 0.2 * self.top:
                 self.top = wanted
         return self.top if self.top > 0.0 else 1.0

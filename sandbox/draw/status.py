@@ -184,7 +184,7 @@ def _draw_legend(painter: Painter, x: float, y: float, kinds: list[tuple[str, st
 
 
 def _scale_bar_parts(top: float) -> tuple[str, str, str]:
-    return words.CHAINS, "0", f"{number(top, decimals_for(top))} {words.FORCE_UNIT}"
+    return words.CHAINS, "0", f"{number(top, decimals_for(0.1 * top))} {words.FORCE_UNIT}"
 
 
 def _scale_bar_width(painter: Painter, top: float) -> int:

@@ -15,7 +15,7 @@ from sandbox.frame import BodyShape, Frame
 Floats = NDArray[np.float64]
 
 OUTLINE = 1.5  # width on screen at scale 1 [px]
-FADED = 0.52  # how far grains recede into the ground when force chains are shown
+FADED = 0.35  # how far grains recede into the ground when force chains are shown
 CLOSED_AREA = 0.60  # the mark has closed when a grain has shrunk to this share of its area
 SPIN_FROM = 11.0  # below this mean radius on screen a radius line would only be noise [px]
 
