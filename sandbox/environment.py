@@ -51,6 +51,8 @@ def require_display() -> None:
     no_server = not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
     if sys.platform.startswith("linux") and no_server and not driver:
         raise InputError(f"no display (DISPLAY and WAYLAND_DISPLAY are not set): {_RECORD_INSTEAD}")
+    if not driver:
+        os.environ.pop("SDL_VIDEODRIVER", None)  # pygame takes the empty word for Windows' driver
     hide_greeting()
     import pygame
 
