@@ -73,8 +73,8 @@ def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
         inverse_hi = 1.0 / math.sqrt(hi2)
         inverse_hj = 1.0 / math.sqrt(hj2)
         overlap = hi2 * inverse_hi + hj2 * inverse_hj - r2 * inverse
-        # A plain select, true also for nan, so that nan goes on meaning nan.
-        overlap = max(0.0, overlap)
+        # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
+        overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
         f = stiffness[i] * overlap
         energy += 0.25 * f * overlap  # each pair is met twice
         fi = f * inverse_hi
