@@ -51,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def parse(words: Sequence[str]) -> argparse.Namespace:
     """The options of the command, with ``run`` the function that carries it out."""
-    parser, commands = _parsers()
+    parser, commands = parsers()
     first = words[0] if words else "play"
     if not first.startswith("-") and first not in commands:
         raise InputError(f"unknown command {first!r}{_meant_command(first, commands)}")
@@ -63,7 +63,8 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     return options
 
 
-def _parsers() -> tuple[Parser, dict[str, Parser]]:
+def parsers() -> tuple[Parser, dict[str, Parser]]:
+    """The parser of the whole command line, and that of each command."""
     parser = Parser(
         prog=PROGRAM,
         description="Push and pull deformable grains, regular and auxetic, and watch the forces.",

@@ -1,0 +1,64 @@
+"""What the README says is true of the program."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sandbox import cli
+
+REPOSITORY = Path(__file__).parents[1]
+README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+
+
+def command(name: str) -> str:
+    """A command of the README, found as continuous integration finds it."""
+    script = REPOSITORY / ".ci" / "readme_command.py"
+    return subprocess.run(
+        [sys.executable, str(script), name], capture_output=True, text=True, check=True
+    ).stdout.strip()
+
+
+def test_the_two_commands_are_one_line_each() -> None:
+    assert command("start").startswith("python3 -m venv ")
+    assert command("test").endswith("-m pytest")
+
+
+def test_the_first_command_can_be_run_with_and_without_a_screen() -> None:
+    words = shlex.split(command("start"))
+    played = words[words.index("sandbox") + 1 :]
+    assert cli.parse(played).command == "play"
+    instead = re.search(r"put `(record [^`]+)` in place of `([^`]+)`", README)
+    assert instead
+    assert instead[2] == " ".join(played)
+    assert cli.parse(shlex.split(instead[1])).command == "record"
+
+
+def test_every_option_is_in_the_summary_of_the_command_line() -> None:
+    summary = re.search(r"```text\n(.+?)```", README, re.DOTALL)
+    assert summary
+    for name, parser in cli.parsers()[1].items():
+        assert f"python -m sandbox {name}" in summary[1]
+        for option in parser.options:
+            assert option in summary[1] or option == "--help", option
+
+
+def test_the_keys_are_those_of_the_help_page() -> None:
+    words = pytest.importorskip("sandbox.draw.words")
+    rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", README, re.MULTILINE)
+    shown = {key: meaning for key, meaning in rows if key in dict(words.HELP)}
+    shown["H, F1"] = "this page"
+    assert shown == dict(words.HELP)
+
+
+def test_links_lead_somewhere() -> None:
+    targets = re.findall(r"\]\(([^)#]+)\)", README)
+    local = [target for target in targets if "://" not in target]
+    assert local
+    for target in local:
+        assert (REPOSITORY / target).exists(), target
