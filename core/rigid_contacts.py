@@ -59,14 +59,19 @@ def support(s, u, v, nx, ny):
     return h, (v * c2 - u * s2) / h
 
 
-@kernel
+@kernel(fastmath=False)
 def beyond(s, u, v, dx, dy, ux, uy):
     """How far the contact point of a grain at d from the end of an edge lies beyond that end; u points along the edge to it. [R]
 
-    Edge and vertex decide by this one expression, in the same arithmetic, so that never both or neither of them acts.
+    Edge and vertex decide by this one expression, so that never both or neither of them acts. That needs the same rounding
+    in both places, hence no fast math: the compiler would be free to fuse or reorder each copy in its own way.
     """
     side = 1.0 if ux * dy - uy * dx >= 0.0 else -1.0
-    _, slope = support(s, u, v, -side * uy, side * ux)
+    nx = -side * uy
+    ny = side * ux
+    c2 = nx * nx - ny * ny
+    s2 = 2.0 * nx * ny
+    slope = (v * c2 - u * s2) / math.sqrt(s + u * c2 + v * s2)
     return dx * ux + dy * uy + side * slope
 
 

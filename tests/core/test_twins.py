@@ -129,6 +129,6 @@ def test_nan_passes_through_the_kernels(row: int) -> None:
     relaxation.run(1)
     minimizer = relaxation._minimizer
     minimizer.state[row, 3] = np.nan
-    energy = fire.evaluate(minimizer, None, None)
+    energy = fire.evaluate(minimizer, None, None, None)
     assert np.isnan(energy)
     assert np.isnan(minimizer.force[:, 3]).any()
