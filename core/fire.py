@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from core.contacts import add_contact_forces, grain_overlap, prepare
 from core.elasticity import finish
+from core.friction import add_friction_forces
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, touch
@@ -64,13 +65,16 @@ class Grains(NamedTuple):
 
 
 class Minimizer(NamedTuple):
-    """Arrays of one relaxation. All per-grain arrays stand in the order that the neighbour lists want."""
+    """Arrays of one relaxation. All per-grain arrays stand in the order that the neighbour lists want.
 
-    state: NDArray[np.float64]  # (5, N) x, y, p, q1, q2 [R]
-    velocity: NDArray[np.float64]  # (5, N)
-    force: NDArray[np.float64]  # (5, N) [k R]
-    inverse_mass: NDArray[np.float64]  # (5, N)
-    reference: NDArray[np.float64]  # (5, N) state when the lists were built
+    D is 5, or 6 with friction: row 5 is then how far each grain has turned since the start of the increment [rad].
+    """
+
+    state: NDArray[np.float64]  # (D, N) x, y, p, q1, q2 [R]
+    velocity: NDArray[np.float64]  # (D, N)
+    force: NDArray[np.float64]  # (D, N) [k R]
+    inverse_mass: NDArray[np.float64]  # (D, N)
+    reference: NDArray[np.float64]  # (D, N) state when the lists were built
     support: NDArray[np.float64]  # (3, N)
     grains: Grains
     lists: Lists
@@ -166,7 +170,7 @@ def permute(values, order, scratch):
 
 
 @kernel
-def relist(m, box, rigid, skin):
+def relist(m, box, rigid, friction, skin):
     """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
 
     A kernel of its own, called between slices of ``run``: lists are rebuilt hundreds of times less often than forces.
@@ -175,7 +179,7 @@ def relist(m, box, rigid, skin):
     if trouble != FIT:
         return trouble
     order = m.lists.order
-    for row in range(5):
+    for row in range(m.state.shape[0]):
         permute(m.state[row], order, m.scratch)
         permute(m.velocity[row], order, m.scratch)
         permute(m.inverse_mass[row], order, m.scratch)
@@ -184,6 +188,9 @@ def relist(m, box, rigid, skin):
     permute(m.grains.area_stiffness, order, m.scratch)
     permute(m.grains.shape_stiffness, order, m.scratch)
     permute(m.identity, order, m.scratch_identity)
+    if friction is not None:
+        for place in range(m.identity.shape[0]):
+            friction.place[m.identity[place]] = place
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin):
         return RIGID_FULL
     m.reference[:] = m.state
@@ -193,7 +200,7 @@ def relist(m, box, rigid, skin):
 
 
 @kernel
-def evaluate(m, box, rigid):
+def evaluate(m, box, rigid, friction):
     """Forces of every term that the scene has, into ``force``; returns the energy [k R²]."""
     state = m.state
     force = m.force
@@ -222,6 +229,9 @@ def evaluate(m, box, rigid):
     )
     if rigid is not None:
         energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid)
+    if friction is not None:
+        force[5] = 0.0
+        energy += add_friction_forces(state, force, friction)
     grains = m.grains
     energy += finish(
         state[2],
@@ -269,10 +279,10 @@ def mean_contact_force(m, box, rigid):
 
 
 @kernel
-def run(m, box, rigid, limits, max_iterations):
+def run(m, box, rigid, friction, limits, max_iterations):
     """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE call ``relist``.
 
-    ``box`` and ``rigid`` are None where the scene has no such term, and then no code for them exists.
+    ``box``, ``rigid`` and ``friction`` are None where the scene has no such term, and then no code for them exists.
     """
     control = m.control
     bits = control.view(np.int64)
@@ -298,7 +308,7 @@ def run(m, box, rigid, limits, max_iterations):
             control[PENDING] = 1.0  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
         control[PENDING] = 0.0
-        control[ENERGY] = evaluate(m, box, rigid)
+        control[ENERGY] = evaluate(m, box, rigid, friction)
         if np.isnan(control[START_ENERGY]):
             control[START_ENERGY] = control[ENERGY]
         power, force_square, speed_square = second_kick(velocity, force, inverse_mass, 0.5 * dt)

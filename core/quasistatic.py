@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.errors import InputError
+from core.friction import Friction, FrictionForces, FrozenContacts
 from core.packing import Packing
 from core.relaxation import (
     DEFAULT_FORCE_FLOOR,
@@ -59,14 +60,20 @@ class Increment:
     reactions: Floats  # force and torque of the grains on each body, (B, 3) [k R, k R²]
     grain_contacts: observables.GrainContacts
     body_contacts: observables.RigidContacts
+    friction: FrictionForces | None = None
 
 
 class Quasistatic:
     """A packing among rigid bodies, driven increment by increment."""
 
     def __init__(
-        self, packing: Packing, world: RigidWorld, settings: Settings | None = None
+        self,
+        packing: Packing,
+        world: RigidWorld,
+        settings: Settings | None = None,
+        friction: Friction | None = None,
     ) -> None:
+        """``friction`` None: no friction, and nothing of it is computed. Raises InputError if the step is too long."""
         self.packing = packing
         self.world = world
         self.settings = settings or Settings()
@@ -76,6 +83,9 @@ class Quasistatic:
                 f"the increment must be at most {LONGEST_STEP} of the smallest radius, here {LONGEST_STEP * smallest:.3g} R"
             )
         self.reactions = np.zeros((len(world.bodies), 3))
+        self.friction = friction
+        self._frozen: FrozenContacts | None = None
+        self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
         self._placement: Floats = world.placement()
@@ -106,12 +116,14 @@ class Quasistatic:
                 self._stopped[name] = stopped
         self._start = self.packing.state.copy()
         self._length = float(np.sqrt(sum(dx * dx + dy * dy for dx, dy in self._moved.values())))
+        self._freeze_friction()
         self._predict()
         primitives, _ = self.world.primitives()
         settings = self.settings
         self._relaxation = Relaxation(
             self.packing,
             primitives,
+            None if self._frozen is None else self._frozen.terms,
             tolerance=settings.tolerance,
             force_floor=settings.force_floor,
             skin=settings.skin,
@@ -125,16 +137,20 @@ class Quasistatic:
         report = self._relaxation.run(max_iterations)
         if report.reason is StopReason.BUDGET:
             return None
-        if report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
+        good = report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
+        if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self.packing.state[:] = self._start
             self.world.place(self._placement)
         else:
             self._relaxation.write_back()
+        forces = None
+        if good and self.friction is not None and self._frozen is not None:
+            forces = self.friction.end(self._frozen, self.packing, self._relaxation.turned())
         self._relaxation = None
         self._last = self.packing.state - self._start
         self._last_length = self._length
-        return self._observe(report)
+        return self._observe(report, forces)
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
         """All contacts as things stand now."""
@@ -152,6 +168,9 @@ class Quasistatic:
             raise RuntimeError("grains cannot leave in the middle of an increment")
         self.packing = self.packing.select(~gone)
         self._last = np.ascontiguousarray(self._last[:, ~gone])
+        self._contacts = self.contacts()
+        if self.friction is not None:
+            self.friction.select(~gone)
 
     def _predict(self) -> None:
         """Start from the displacement of the increment before, scaled to the step: saves a tenth to a third of the work."""
@@ -163,15 +182,32 @@ class Quasistatic:
             change *= np.minimum(1.0, self._length / np.maximum(distance, 1e-12))
             self.packing.state += change
 
-    def _observe(self, report: Report) -> Increment:
+    def _freeze_friction(self) -> None:
+        """Contacts as they were before the bodies moved, for the lagged friction of this increment."""
+        if self.friction is None:
+            return
+        moved = self.world.placement()
+        self.world.place(self._placement)
         primitives, owner = self.world.primitives()
-        bodies = observables.body_contacts(self.packing, primitives)
-        self.reactions = observables.reactions(bodies, owner, self.world.placement())
+        pairs, bodies = self._contacts or self.contacts()
+        self.world.place(moved)
+        self._frozen = self.friction.begin(
+            self.packing, pairs, bodies, primitives, owner, self._placement, moved
+        )
+
+    def _observe(self, report: Report, friction: FrictionForces | None) -> Increment:
+        _, owner = self.world.primitives()
+        placement = self.world.placement()
+        pairs, bodies = self._contacts = self.contacts()
+        self.reactions = observables.reactions(bodies, owner, placement)
+        if friction is not None:
+            self.reactions += friction.reactions(owner, placement)
         return Increment(
-            self._moved,
-            self._stopped,
-            report,
-            self.reactions,
-            observables.grain_contacts(self.packing),
-            bodies,
+            moved=self._moved,
+            stopped=self._stopped,
+            report=report,
+            reactions=self.reactions,
+            grain_contacts=pairs,
+            body_contacts=bodies,
+            friction=friction,
         )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core import fire, neighbors, rigid_contacts
 from core.errors import InputError
+from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
 from core.material import area_modulus, deformation_stiffness, shape_modulus
 from core.packing import Packing
 
@@ -58,6 +59,7 @@ class Relaxation:
         self,
         packing: Packing,
         primitives: NDArray[np.float64] | None = None,
+        friction: FrictionTerms | None = None,
         *,
         tolerance: float = DEFAULT_TOLERANCE,
         force_floor: float = DEFAULT_FORCE_FLOOR,
@@ -81,8 +83,11 @@ class Relaxation:
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
-        self._minimizer = _minimizer(packing)
+        self._friction = friction
+        self._minimizer = _minimizer(packing, friction is not None)
         stiffest = float(packing.contact_stiffness.max()) if count else 1.0
+        if friction is not None:
+            stiffest *= 1.0 + TANGENTIAL_STIFFNESS
         smallest = float(packing.rest_radius.min()) if count else 1.0
         largest = float(packing.rest_radius.max()) if count else 1.0
         self._limits = fire.Limits(
@@ -107,7 +112,9 @@ class Relaxation:
         """Go on for at most ``max_iterations`` force evaluations; the GIL is free meanwhile."""
         left = min(max_iterations, self.max_iterations - self.iterations)
         while self._reason is StopReason.BUDGET and left > 0:
-            code, used = fire.run(self._minimizer, self._box, self._rigid, self._limits, left)
+            code, used = fire.run(
+                self._minimizer, self._box, self._rigid, self._friction, self._limits, left
+            )
             self.iterations += used
             left -= used
             if code == fire.LISTS_STALE:
@@ -132,17 +139,25 @@ class Relaxation:
 
     def write_back(self) -> None:
         """Put the relaxed state into the packing, in the packing's own order."""
-        self.packing.state[:, self._minimizer.identity] = self._minimizer.state
+        self.packing.state[:, self._minimizer.identity] = self._minimizer.state[:5]
+
+    def turned(self) -> NDArray[np.float64]:
+        """How far each grain has turned (N,) [rad], in the packing's own order. Only with friction."""
+        turned = np.empty(len(self.packing))
+        turned[self._minimizer.identity] = self._minimizer.state[5]
+        return turned
 
     def forces(self) -> NDArray[np.float64]:
-        """Generalised forces (5, N) [k R] of the latest evaluation, in the packing's own order."""
+        """Generalised forces (5, N), with friction (6, N), of the latest evaluation [k R], in the packing's own order."""
         forces = np.empty_like(self._minimizer.force)
         forces[:, self._minimizer.identity] = self._minimizer.force
         return forces
 
     def _relist(self) -> None:
         while True:
-            answer = fire.relist(self._minimizer, self._box, self._rigid, self._limits.skin)
+            answer = fire.relist(
+                self._minimizer, self._box, self._rigid, self._friction, self._limits.skin
+            )
             if answer == neighbors.FIT:
                 return
             lists = self._minimizer.lists
@@ -163,7 +178,7 @@ class Relaxation:
             )
 
 
-def _minimizer(packing: Packing) -> fire.Minimizer:
+def _minimizer(packing: Packing, spins: bool) -> fire.Minimizer:
     count = len(packing)
     nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
     rest_area = packing.rest_radius**2
@@ -171,14 +186,19 @@ def _minimizer(packing: Packing) -> fire.Minimizer:
     # A grain that resists area or shape far more than a contact does is made heavier, so that dt need not shrink for it.
     own = 2.0 * deformation_stiffness(nu, stiffness) * (1.0 + np.abs(nu))
     mass = fire.SHAPE_MASS * np.maximum(1.0, own / (fire.SHAPE_MASS * stiffness))
-    inverse_mass = np.ones((5, count))
-    inverse_mass[2:] = 1.0 / mass
+    rows = 6 if spins else 5
+    inverse_mass = np.ones((rows, count))
+    inverse_mass[2:5] = 1.0 / mass
+    state = np.zeros((rows, count))
+    state[:5] = packing.state
+    if spins:
+        inverse_mass[5] = 1.0 / (SPIN_MASS * rest_area)
     return fire.Minimizer(
-        state=packing.state.copy(),
-        velocity=np.zeros((5, count)),
-        force=np.zeros((5, count)),
+        state=state,
+        velocity=np.zeros((rows, count)),
+        force=np.zeros((rows, count)),
         inverse_mass=inverse_mass,
-        reference=np.zeros((5, count)),
+        reference=np.zeros((rows, count)),
         support=np.zeros((3, count)),
         grains=fire.Grains(
             contact_stiffness=stiffness.copy(),

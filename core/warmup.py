@@ -10,12 +10,16 @@ from collections.abc import Callable
 import numpy as np
 
 from core import contacts, fire, neighbors, observables, rigid_contacts
+from core.friction import Friction
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation
 
 
 def compile_kernels(
-    box: PeriodicBox | None, rigid: bool, progress: Callable[[float], None] | None = None
+    box: PeriodicBox | None,
+    rigid: bool,
+    friction: bool,
+    progress: Callable[[float], None] | None = None,
 ) -> None:
     """Compile for a scene with these terms. ``progress`` is told the share done, from small kernels to the one that holds all."""
     packing = Packing(
@@ -23,15 +27,23 @@ def compile_kernels(
         [0.0, 0.1, 0.0],
         box=box and PeriodicBox(40.0, 40.0 if np.isfinite(box.height) else box.height),
     )
-    primitives = (
-        np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]]) if rigid else None
-    )
-    relaxation = Relaxation(packing, primitives, tolerance=0.5, max_iterations=10)
-    m, form, term = relaxation._minimizer, relaxation._box, relaxation._rigid
+    rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
+    primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
+    terms = None
+    if friction:
+        pairs = observables.grain_contacts(packing)
+        touching = observables.body_contacts(packing, primitives)
+        owner, still = np.zeros(len(primitives), dtype=np.int64), np.zeros((1, 3))
+        memory = Friction(0.5, len(packing))
+        frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
+        memory.end(frozen, packing, np.zeros(len(packing)))
+        terms = frozen.terms
+    relaxation = Relaxation(packing, primitives, terms, tolerance=0.5, max_iterations=10)
+    m, form, body = relaxation._minimizer, relaxation._box, relaxation._rigid
 
     def forces() -> None:
         rows = m.force
-        contacts.prepare(*m.state[2:], *m.support, *rows)
+        contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
         lists = m.lists
         contacts.add_contact_forces(
             m.state,
@@ -46,16 +58,13 @@ def compile_kernels(
 
     steps: list[tuple[float, Callable[[], object]]] = [
         (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
-        (0.10, lambda: fire.relist(m, form, term, 0.1)),
+        (0.10, lambda: fire.relist(m, form, body, terms, 0.1)),
         (0.15, forces),
-        (0.15, lambda: fire.evaluate(m, form, term)),
-        (0.10, lambda: fire.mean_contact_force(m, form, term)),
+        (0.15, lambda: fire.evaluate(m, form, body, terms)),
+        (0.10, lambda: fire.mean_contact_force(m, form, body)),
         (0.22, lambda: relaxation.run(10)),
         (0.08, lambda: observables.grain_contacts(packing)),
-        (
-            0.07,
-            lambda: None if primitives is None else observables.body_contacts(packing, primitives),
-        ),
+        (0.07, lambda: observables.body_contacts(packing, primitives)),
     ]
     done = 0.0
     for share, step in steps:

@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.errors import InputError
+from core.friction import Friction
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
 from core.rigid import Point
@@ -64,7 +65,10 @@ class Session:
         self._progress = progress
         report = progress or _silent
         report(COMPILING, 0.0)
-        compile_kernels(None, True, lambda share: report(COMPILING, COMPILE_SHARE * share))
+        frictional = float(self.settings.get("friction", 0.0)) > 0.0
+        compile_kernels(
+            None, True, frictional, lambda share: report(COMPILING, COMPILE_SHARE * share)
+        )
         report(PACKING, COMPILE_SHARE)
         setup = self.scene.build(
             self.settings,
@@ -80,7 +84,8 @@ class Session:
     def _begin(self, setup: Setup) -> None:
         """Start from what was built: relax with all bodies at rest, and record that as increment 0."""
         self._setup = setup
-        self._engine = Quasistatic(setup.packing, setup.world, setup.solver)
+        friction = Friction(setup.friction, len(setup.packing)) if setup.friction > 0.0 else None
+        self._engine = Quasistatic(setup.packing, setup.world, setup.solver, friction)
         self.history = History()
         self._targets: dict[str, Point] = {}
         self._held: set[str] = set()
@@ -375,9 +380,10 @@ class Session:
     def state_hash(self) -> str:
         """Hash of every bit of the packing and of where the bodies are."""
         setup = self._require()
-        return hashlib.sha256(
-            setup.packing.hash().encode() + setup.world.placement().tobytes()
-        ).hexdigest()
+        digest = hashlib.sha256(setup.packing.hash().encode() + setup.world.placement().tobytes())
+        if self._engine.friction is not None:
+            digest.update(self._engine.friction.hash().encode())
+        return digest.hexdigest()
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""

@@ -70,6 +70,7 @@ def take(view: View) -> Frame:
         notices=view.notices,
         curve_stroke=view.history.curve[0],
         curve_force=view.history.curve[1],
+        spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
         curve_label=f"force on the {view.drive.label} [k R]",
     )
 

@@ -10,6 +10,7 @@ from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
+    FRICTION,
     MATERIAL,
     SOLVER,
     Handle,
@@ -24,7 +25,7 @@ from scenes.scene import (
 
 WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]
 PISTON = 1.6  # thickness of the piston [R]
-LEFT_BEHIND = 1.2  # a grain this far below the lips has left [R]
+LEFT_BEHIND = 0.8  # a grain whose centre is this far below the lips has left [R]
 LIFT = 3.0  # how far the piston may be drawn back [R]
 
 
@@ -60,6 +61,7 @@ class Hopper(Scene):
             "rest area of the grains over the area open to them, at the start",
         ),
         Parameter("stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke"),
+        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION),
         *MATERIAL,
         *SOLVER,
     )
@@ -140,6 +142,7 @@ class Hopper(Scene):
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
             outlet=Outlet(-LEFT_BEHIND, opening),
+            friction=float(values["friction"]),
         )
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:

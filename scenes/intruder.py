@@ -9,7 +9,18 @@ from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import MATERIAL, SOLVER, Handle, Progress, Scene, Setup, Values, recipe, solver
+from scenes.scene import (
+    FRICTION,
+    MATERIAL,
+    SOLVER,
+    Handle,
+    Progress,
+    Scene,
+    Setup,
+    Values,
+    recipe,
+    solver,
+)
 
 ASPECT = 1.4  # width of the box over its height
 MARGIN = 3.0  # between intruder and wall at both ends of the scripted drag [R]
@@ -40,6 +51,7 @@ class Intruder(Scene):
             "rest area of the grains over the area open to them",
         ),
         Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag"),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
         *MATERIAL,
         *SOLVER,
     )
@@ -84,6 +96,7 @@ class Intruder(Scene):
             handles=(Handle("intruder", "intruder", (1.0, 0.0), radius),),
             bounds=(-WALL, -WALL, width + WALL, height + WALL),
             outline=outline,
+            friction=float(values["friction"]),
         )
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:

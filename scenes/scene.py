@@ -60,6 +60,9 @@ class Setup:
     bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
+    friction: float = (
+        0.0  # Coulomb coefficient, between grains and with bodies; 0: the term does not exist
+    )
 
 
 @dataclass(frozen=True)
@@ -142,6 +145,7 @@ MATERIAL = (
         "stiffness of a contact over that of a grain: higher is harder and slower",
     ),
 )
+FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leaves the term out"
 SOLVER = (
     Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment"),
     Parameter(

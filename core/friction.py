@@ -1,0 +1,299 @@
+"""Coulomb friction, as an incremental potential whose normal forces lag one increment behind.
+
+At the start of a load increment every contact's tangent t, arms h and Coulomb cap μ f_n are frozen. During the relaxation
+the tangential slip is u = ξ + t·(δx_i − δx_j) + h_i δφ_i + h_j δφ_j (for a rigid body: minus its prescribed motion), where φ
+is a grain's spin and ξ what the contact remembers; each contact adds the convex Huber potential k_t u²/2 while k_t |u| ≤ cap,
+beyond it cap (|u| − cap/2k_t). Its force never exceeds the cap, it is C¹, and FIRE minimises it like any other term.
+Afterwards ξ becomes u, clipped to ± cap/k_t, and is remembered by the pair of grains, so that it survives new neighbour lists
+and grains that leave. New contacts begin at 0. Smaller increments converge to Coulomb's law. The lag is that of Li et al.,
+Incremental Potential Contact, doi:10.1145/3386569.3392425.
+
+A scene without friction has none of this: no spin, no memory, and its kernels are compiled without the term.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import observables
+from core.errors import InputError
+from core.jit import kernel
+from core.observables import GrainContacts, RigidContacts
+from core.packing import Packing
+from core.rigid_contacts import DISC
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+TANGENTIAL_STIFFNESS = 0.5  # k_t over C
+SPIN_MASS = 2.0  # inertia of a spin over R0², relative to x and y
+_BODY = 2**30  # keys of primitives begin here; labels of grains stay below
+_GRAIN = 2**31
+
+
+class FrictionTerms(NamedTuple):
+    """Frictional contacts of one increment, (K,) each; grains are numbered as in the packing."""
+
+    i: Indices
+    j: Indices  # -1: a rigid body
+    tx: Floats
+    ty: Floats
+    arm_i: Floats  # h_i [R]
+    arm_j: Floats  # h_j [R]; 0 for a rigid body
+    stiffness: Floats  # k_t [k]
+    cap: Floats  # μ f_n [k R]
+    offset: Floats  # slip when all coordinates are 0 [R]
+    place: Indices  # (N,) where each grain of the packing stands in the minimiser
+
+
+@kernel
+def slip(state, terms, k):
+    """u of contact k [R]."""
+    i = terms.place[terms.i[k]]
+    u = terms.offset[k] + terms.tx[k] * state[0, i] + terms.ty[k] * state[1, i]
+    u += terms.arm_i[k] * state[5, i]
+    if terms.j[k] >= 0:
+        j = terms.place[terms.j[k]]
+        u += terms.arm_j[k] * state[5, j] - terms.tx[k] * state[0, j] - terms.ty[k] * state[1, j]
+    return u
+
+
+@kernel
+def add_friction_forces(state, force, terms):
+    """Add tangential forces to rows 0 and 1 and torques to row 5 of ``force``. Returns the energy [k R²]."""
+    energy = 0.0
+    for k in range(terms.i.shape[0]):
+        u = slip(state, terms, k)
+        stiffness = terms.stiffness[k]
+        cap = terms.cap[k]
+        pull = stiffness * u
+        if pull > cap:
+            energy += cap * (u - 0.5 * cap / stiffness)
+            pull = cap
+        elif pull < -cap:
+            energy -= cap * (u + 0.5 * cap / stiffness)
+            pull = -cap
+        else:
+            energy += 0.5 * pull * u
+        i = terms.place[terms.i[k]]
+        force[0, i] -= pull * terms.tx[k]
+        force[1, i] -= pull * terms.ty[k]
+        force[5, i] -= pull * terms.arm_i[k]
+        if terms.j[k] >= 0:
+            j = terms.place[terms.j[k]]
+            force[0, j] += pull * terms.tx[k]
+            force[1, j] += pull * terms.ty[k]
+            force[5, j] -= pull * terms.arm_j[k]
+    return energy
+
+
+@kernel
+def slips(state, terms, values):
+    """u of every contact into ``values`` (K,)."""
+    for k in range(terms.i.shape[0]):
+        values[k] = slip(state, terms, k)
+
+
+@dataclass(frozen=True)
+class FrozenContacts:
+    """The frictional contacts of one increment: terms for the kernels, and what is needed to remember them, (K,) each."""
+
+    terms: FrictionTerms
+    keys: Indices
+    primitive: Indices  # of a rigid body; -1 between grains
+    x: Floats  # where they touch [R]
+    y: Floats
+
+
+@dataclass(frozen=True)
+class FrictionForces:
+    """Tangential forces at the end of an increment, (K,) each."""
+
+    i: Indices
+    j: Indices  # -1: a rigid body
+    primitive: Indices  # of a rigid body; -1 between grains
+    fx: Floats  # on grain i [k R]; on the other the opposite
+    fy: Floats
+    x: Floats  # where it acts [R]
+    y: Floats
+    sliding: NDArray[np.bool_]  # at the Coulomb cap
+
+    def reactions(self, owner: Indices, placement: Floats) -> Floats:
+        """Force and torque on each body (B, 3) [k R, k R²]; arguments as for ``observables.reactions``."""
+        on_body = self.j < 0
+        body = owner[self.primitive[on_body]]
+        fx, fy = -self.fx[on_body], -self.fy[on_body]
+        total = np.zeros((len(placement), 3))
+        np.add.at(total[:, 0], body, fx)
+        np.add.at(total[:, 1], body, fy)
+        lever_x = self.x[on_body] - placement[body, 0]
+        lever_y = self.y[on_body] - placement[body, 1]
+        np.add.at(total[:, 2], body, lever_x * fy - lever_y * fx)
+        return total
+
+
+class Friction:
+    """Friction of one packing: the coefficient, every grain's spin, and what every contact remembers."""
+
+    def __init__(self, coefficient: float, grains: int) -> None:
+        """Raises InputError unless the coefficient is positive and finite: without friction, give None instead of this."""
+        if not (coefficient > 0.0 and np.isfinite(coefficient)):
+            raise InputError(
+                "the friction coefficient must be greater than 0; for no friction leave it out"
+            )
+        self.coefficient = float(coefficient)
+        self.spin: Floats = np.zeros(grains)
+        self._keys: Indices = np.zeros(0, dtype=np.int64)
+        self._slips: Floats = np.zeros(0)
+
+    def copy(self) -> Friction:
+        """An independent copy, equal to the last bit."""
+        twin = Friction(self.coefficient, 0)
+        for name, value in vars(self).items():
+            setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
+        return twin
+
+    def hash(self) -> str:
+        """SHA-256 of spins and memories."""
+        digest = hashlib.sha256(np.float64(self.coefficient).tobytes())
+        for array in (self.spin, self._keys, self._slips):
+            digest.update(array.tobytes())
+        return digest.hexdigest()
+
+    def select(self, keep: NDArray[np.bool_]) -> None:
+        """Forget the grains that are not kept; contacts with them end by themselves."""
+        self.spin = self.spin[keep]
+
+    def remembered(self) -> dict[tuple[int, int], float]:
+        """Slip ξ [R] by (label, label) of two grains, or (label, −1 − primitive) of a grain and a body."""
+        first, second = self._keys // _GRAIN, self._keys % _GRAIN
+        second = np.where(second >= _BODY, _BODY - 1 - second, second)
+        return {
+            (int(a), int(b)): float(s) for a, b, s in zip(first, second, self._slips, strict=True)
+        }
+
+    def begin(
+        self,
+        packing: Packing,
+        pairs: GrainContacts,
+        bodies: RigidContacts,
+        primitives: Floats,
+        owner: Indices,
+        before: Floats,
+        after: Floats,
+    ) -> FrozenContacts:
+        """Freeze the contacts of a packing for an increment in which the bodies go from ``before`` to ``after`` (B, 3).
+
+        ``pairs`` and ``bodies`` are its contacts before the bodies move, ``primitives`` and ``owner`` the bodies' shapes then.
+        """
+        support = observables.support_coefficients(packing)
+        r = np.hypot(pairs.dx, pairs.dy)
+        nx, ny = pairs.dx / r, pairs.dy / r
+        arm_i, arm_j = _arm(support, pairs.i, nx, ny), _arm(support, pairs.j, nx, ny)
+        stiffness = TANGENTIAL_STIFFNESS * pairs.normal_force / pairs.overlap
+        # Between grains. All tangents are n turned counter-clockwise, n from i to j, or from the grain to the body.
+        offset = ny * (packing.x[pairs.i] - packing.x[pairs.j]) - nx * (
+            packing.y[pairs.i] - packing.y[pairs.j]
+        )
+        contact_x = packing.x[pairs.i] + arm_i * nx
+        contact_y = packing.y[pairs.i] + arm_i * ny
+        # With bodies, whose contact point moves as prescribed.
+        g = bodies.grain
+        rows = primitives[bodies.primitive]
+        bx, by = bodies.x - packing.x[g], bodies.y - packing.y[g]
+        mx, my = _body_normals(rows, packing, bodies)
+        arm_b = np.where(rows[:, 0] == DISC, _arm(support, g, mx, my), np.abs(bx * mx + by * my))
+        body_x, body_y = packing.x[g] + arm_b * mx, packing.y[g] + arm_b * my
+        body = owner[bodies.primitive]
+        shift = after[body] - before[body]
+        moved_x = shift[:, 0] - shift[:, 2] * (body_y - before[body, 1])
+        moved_y = shift[:, 1] + shift[:, 2] * (body_x - before[body, 0])
+        offset_b = my * packing.x[g] - mx * packing.y[g] + my * moved_x - mx * moved_y
+        keys = np.concatenate(
+            [_pair_keys(packing, pairs), packing.label[g] * _GRAIN + _BODY + bodies.primitive]
+        )
+        caps = self.coefficient * np.concatenate([pairs.normal_force, bodies.normal_force])
+        stiffnesses = np.concatenate(
+            [stiffness, TANGENTIAL_STIFFNESS * packing.contact_stiffness[g]]
+        )
+        remembered = self._recall(keys)
+        limit = caps / stiffnesses
+        terms = FrictionTerms(
+            i=np.concatenate([pairs.i, g]),
+            j=np.concatenate([pairs.j, np.full(len(g), -1)]),
+            tx=np.concatenate([-ny, -my]),
+            ty=np.concatenate([nx, mx]),
+            arm_i=np.concatenate([arm_i, arm_b]),
+            arm_j=np.concatenate([arm_j, np.zeros(len(g))]),
+            stiffness=stiffnesses,
+            cap=caps,
+            offset=np.concatenate([offset, offset_b]) + np.clip(remembered, -limit, limit),
+            place=np.arange(len(packing)),
+        )
+        return FrozenContacts(
+            terms=terms,
+            keys=keys,
+            primitive=np.concatenate([np.full(len(pairs.i), -1), bodies.primitive]),
+            x=np.concatenate([contact_x, body_x]),
+            y=np.concatenate([contact_y, body_y]),
+        )
+
+    def end(self, frozen: FrozenContacts, packing: Packing, turned: Floats) -> FrictionForces:
+        """Remember the slips of a relaxed packing whose grains turned by ``turned`` (N,) [rad]; the forces they stand for."""
+        terms = frozen.terms
+        state = np.concatenate([packing.state, turned[None]])
+        u = np.empty(len(terms.i))
+        slips(state, terms._replace(place=np.arange(len(packing))), u)
+        limit = terms.cap / terms.stiffness
+        sliding = np.abs(u) >= limit
+        held = np.clip(u, -limit, limit)
+        order = np.argsort(frozen.keys, kind="stable")
+        self._keys, self._slips = frozen.keys[order], held[order]
+        self.spin += turned
+        pull = terms.stiffness * held
+        return FrictionForces(
+            i=terms.i,
+            j=terms.j,
+            primitive=frozen.primitive,
+            fx=-pull * terms.tx,
+            fy=-pull * terms.ty,
+            x=frozen.x,
+            y=frozen.y,
+            sliding=sliding,
+        )
+
+    def _recall(self, keys: Indices) -> Floats:
+        """What the contacts with these keys remember; 0 for new ones."""
+        if not len(self._keys):
+            return np.zeros(len(keys))
+        at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
+        known: Floats = np.where(self._keys[at] == keys, self._slips[at], 0.0)
+        return known
+
+
+def _arm(support: Floats, grain: Indices, nx: Floats, ny: Floats) -> Floats:
+    """h of the grains along n [R]."""
+    s, u, v = support[:, grain]
+    arm: Floats = np.sqrt(s + u * (nx * nx - ny * ny) + v * 2.0 * nx * ny)
+    return arm
+
+
+def _body_normals(rows: Floats, packing: Packing, bodies: RigidContacts) -> tuple[Floats, Floats]:
+    """Unit normals from grains to bodies: along the force, or for a disc (whose law is not central) along the line of centres."""
+    size = np.hypot(bodies.fx, bodies.fy)
+    mx, my = -bodies.fx / size, -bodies.fy / size
+    cx, cy = rows[:, 1] - packing.x[bodies.grain], rows[:, 2] - packing.y[bodies.grain]
+    r = np.maximum(np.hypot(cx, cy), 1e-300)
+    disc = rows[:, 0] == DISC
+    return np.where(disc, cx / r, mx), np.where(disc, cy / r, my)
+
+
+def _pair_keys(packing: Packing, pairs: GrainContacts) -> Indices:
+    a, b = packing.label[pairs.i], packing.label[pairs.j]
+    keys: Indices = np.minimum(a, b) * _GRAIN + np.maximum(a, b)
+    return keys
