@@ -103,9 +103,9 @@ def test_one_grain_thrown_far() -> None:
 
 def test_giant_among_dwarfs() -> None:
     """A size ratio of 1000: every dwarf is within one cell of the giant."""
-    packing = scattered(60, (300.0, 300.0), (0.1, 0.2), None, 3)
+    packing = scattered(100, (150.0, 150.0), (0.1, 0.2), None, 3)
     packing.rest_radius[0] = packing.state[2, 0] = 100.0
-    packing.state[[0, 1, 3, 4], 0] = 150.0, 150.0, 0.0, 0.0
+    packing.state[[0, 1, 3, 4], 0] = 75.0, 75.0, 0.0, 0.0
     found = pairs_by_cells(packing, 0.0)
     assert found == reference.near_pairs(packing, 0.0)
     assert len(found) > 10
