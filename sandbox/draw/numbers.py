@@ -63,16 +63,17 @@ class RoundScale:
     fifth of it, so that a picture and the next one can be compared.
     """
 
-    def __init__(self) -> None:
-        self.top = 0.0
+    def __init__(self, least: float) -> None:
+        self.least = least  # a smaller top would make a show of rounding noise
+        self.top = least
 
     def follow(self, largest: float) -> float:
         """Take in the largest value of the moment; returns the top."""
         if math.isfinite(largest) and largest > 0.0:
-            wanted = nice_ceiling(largest, FINER)
+            wanted = nice_ceiling(max(largest, self.least), FINER)
             if wanted > self.top or largest < 0.2 * self.top:
                 self.top = wanted
-        return self.top if self.top > 0.0 else 1.0
+        return self.top
 
 
 def typical_largest(values: NDArray[np.float64]) -> float:

@@ -20,6 +20,7 @@ from sandbox.frame import Contacts, Frame, HandleState
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
 FADE_FROM, FADE_TO = 0.35, 1.3  # of the mean force: where chains begin to show, and show fully
+FAINT_FROM, FAINT_TO = 0.004, 0.06  # and the same of the scale's top
 KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
 ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px]
 
@@ -29,12 +30,16 @@ def draw_chains(
 ) -> None:
     """A line along every contact: width by the root of the force, colour by the force."""
     force = floats(contacts.force)
-    if not force.size:
+    carrying = force[np.isfinite(force) & (force > 0.0)]
+    if not carrying.size:
         return
+    mean = float(carrying.mean())
     with np.errstate(invalid="ignore"):
         share = np.clip(force / top, 0.0, 1.0)
-        mean = float(np.mean(force, where=np.isfinite(force) & (force > 0.0)) or top)
-        alpha = np.clip((force / mean - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0)
+        alpha = np.minimum(
+            np.clip((force / mean - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0),
+            np.clip((force / top - FAINT_FROM) / (FAINT_TO - FAINT_FROM), 0.0, 1.0),
+        )
     widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
     order = np.argsort(share, kind="stable")  # the strongest on top
     ends = tuple(

@@ -7,6 +7,7 @@ the next layer.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Literal
 
@@ -204,7 +205,9 @@ class Painter:
         shown = self.type.render(text, size, self.theme.text if colour is None else colour, bold)
         width, height = shown.get_size()
         shift = {"left": 0.0, "centre": 0.5 * width, "right": float(width)}[anchor]
-        place = pygame.Rect(round(x - shift), round(y - 0.5 * height), width, height)
+        # Rounded to the same side always: lines of a paragraph keep their distance.
+        corner = math.floor(x - shift + 0.5), math.floor(y - 0.5 * height + 0.5)
+        place = pygame.Rect(corner, (width, height))
         if text:
             self._texts.append((shown, place.topleft, clip))
         return place

@@ -17,6 +17,9 @@ from sandbox.draw.words import FORCE_UNIT, NO_CURVE, STROKE_AXIS
 Floats = NDArray[np.float64]
 
 
+LEAST_FORCE = 0.02  # the axis goes at least this far: it makes no show of rounding noise [k R]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """One line of the plot."""
@@ -58,10 +61,8 @@ def limits(curves: Sequence[tuple[Floats, Floats]]) -> tuple[float, float, float
     low, high = float(strokes.min()), float(strokes.max())
     if high - low <= 0.0:
         high = low + 1.0
-    top = nice_ceiling(float(forces.max()), FINER) if forces.max() > 0.0 else 0.0
+    top = nice_ceiling(max(float(forces.max()), LEAST_FORCE), FINER)
     bottom = -nice_ceiling(float(-forces.min()), FINER) if forces.min() < -0.02 * top else 0.0
-    if top - bottom <= 0.0:
-        top = 1.0
     return low, high, bottom, top
 
 
@@ -119,7 +120,8 @@ def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], labe
     )
 
     top = line + type_.height(BODY) // 2 + round(6 * scale)
-    bottom = rect.bottom - text - round(8 * scale)
+    # Numbers of the stroke stand half a line below the axis, clear of the force axis' lowest.
+    bottom = rect.bottom - text - text // 2 - round(4 * scale)
     box = PlotBox(
         pygame.Rect(rect.left + gutter, top, right - rect.left - gutter, bottom - top), axes
     )
@@ -161,7 +163,7 @@ def _draw_axes(
             anchor="right",
         )
     unit = type_.width(STROKE_AXIS, SMALL)
-    line = box.rect.bottom + round(5 * scale) + type_.height(SMALL) // 2
+    line = box.rect.bottom + type_.height(SMALL) + round(2 * scale)
     painter.text(
         STROKE_AXIS, box.rect.right, line, size=SMALL, colour=theme.soft_text, anchor="right"
     )

@@ -39,6 +39,16 @@ def _first(place: float, low: int, high: int) -> int:
 
 
 @kernel
+def _sane(size: float) -> bool:
+    """Is a sum of magnitudes a number that can be drawn with?
+
+    Not isfinite: that is compiled to v - v == 0, which the flags that let the compiler reorder
+    sums make true for any sum, nan or not. A comparison stays what it is.
+    """
+    return size < 1e12
+
+
+@kernel
 def _mix(under: int, over: int, share: int) -> int:
     """``share`` of 256 parts of colour ``over`` on colour ``under``."""
     rest = 256 - share
@@ -126,7 +136,7 @@ def draw_ellipses(
     for i in range(x.shape[0]):
         stretch = math.hypot(q1[i], q2[i])
         smallest = scale * (p[i] - stretch)
-        if not (math.isfinite(x[i] + y[i] + p[i] + stretch) and smallest > 1e-3):
+        if not (_sane(abs(x[i]) + abs(y[i]) + abs(p[i]) + stretch) and smallest > 1e-3):
             continue
         cx = offset_x + scale * x[i]
         cy = offset_y - scale * y[i]
@@ -196,7 +206,7 @@ def draw_bow_ties(
     for i in range(x.shape[0]):
         stretch = math.hypot(q1[i], q2[i])
         smallest = scale * (p[i] - stretch)
-        sane = math.isfinite(x[i] + y[i] + p[i] + stretch + turn[i] + openness[i])
+        sane = _sane(abs(x[i]) + abs(y[i]) + abs(p[i]) + stretch + abs(turn[i]) + abs(openness[i]))
         if not (chosen[i] and sane and smallest > 1.5):
             continue
         cx = offset_x + scale * x[i]
@@ -266,7 +276,7 @@ def draw_lines(
         length = math.hypot(tx, ty)
         thick = half_width[i]
         strength = alpha[i]
-        if not (math.isfinite(ax + ay + length + thick + strength) and thick > 0.0):
+        if not (_sane(abs(ax) + abs(ay) + length + abs(thick) + abs(strength)) and thick > 0.0):
             continue
         if thick < 0.5:
             strength *= 2.0 * thick
@@ -319,7 +329,7 @@ def draw_ring(
     scale, offset_x, offset_y = to_screen
     cx = offset_x + scale * x
     cy = offset_y - scale * y
-    if not (math.isfinite(cx + cy + radius + half_width + alpha) and radius > 0.0):
+    if not (_sane(abs(cx) + abs(cy) + radius + half_width + alpha) and radius > 0.0):
         return
     reach = radius + half_width + 0.5
     hole = max(radius - half_width - 0.5, 0.0)
@@ -383,18 +393,18 @@ def draw_hull(
     area = 0.0
     x_low = y_low = math.inf
     x_high = y_high = -math.inf
-    total = radius + alpha
+    total = abs(radius) + alpha
     for k in range(count):
         following = (k + 1) % count
         area += corners[k, 0] * corners[following, 1] - corners[following, 0] * corners[k, 1]
         sx = offset_x + scale * corners[k, 0]
         sy = offset_y - scale * corners[k, 1]
-        total += sx + sy
+        total += abs(sx) + abs(sy)
         x_low = min(x_low, sx)
         x_high = max(x_high, sx)
         y_low = min(y_low, sy)
         y_high = max(y_high, sy)
-    if count == 0 or not math.isfinite(total + area):
+    if count == 0 or not _sane(total):
         return
     # Below three corners the area is zero but for rounding.
     flat = count < 3 or abs(scale * scale * area) < 1e-9

@@ -17,10 +17,11 @@ from sandbox.draw.painter import Painter
 from sandbox.draw.plot import Curve, draw_plot
 from sandbox.draw.status import draw_header, draw_status
 from sandbox.draw.text import BODY, Type
-from sandbox.draw.theme import packing_colour, theme_named
+from sandbox.draw.theme import channels, packing_colour, theme_named
 from sandbox.draw.world import draw_bodies, draw_grains
 from sandbox.frame import Frame
 
+LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
 MARGIN = 14.0  # round the scene at scale 1 [px]
 
 
@@ -44,8 +45,8 @@ class Renderer:
         self.surface = pygame.Surface(size, 0, 32)
         self.layout: Layout = layout(size, scale)
         self.camera = Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0)
-        self._chain_scale = RoundScale()
-        self._hand_scale = RoundScale()
+        self._chain_scale = RoundScale(LEAST_CHAIN)
+        self._hand_scale = RoundScale(LEAST_PUSH)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -71,8 +72,12 @@ class Renderer:
 
     def forget(self) -> None:
         """Start the force scales afresh."""
-        self._chain_scale = RoundScale()
-        self._hand_scale = RoundScale()
+        self._chain_scale = RoundScale(LEAST_CHAIN)
+        self._hand_scale = RoundScale(LEAST_PUSH)
+
+    def clear(self) -> None:
+        """Nothing but the ground."""
+        self.surface.fill(channels(self.theme.ground))
 
     def painter(self) -> Painter:
         """For drawing more on the surface; flush it afterwards."""

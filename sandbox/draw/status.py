@@ -34,8 +34,10 @@ def lamp(frame: Frame, theme: Theme) -> Lamp:
     """Green: settled to the tolerance; amber: on the way; red: don't believe the picture."""
     if frame.stop_reason in words.BROKEN:
         return Lamp(theme.bad, words.STOPPED[frame.stop_reason], "")
-    if not math.isfinite(frame.residual) or frame.residual > 1.0:
+    if not math.isfinite(frame.residual):
         error = words.NO_FORCES
+    elif frame.residual > 1.0:
+        error = words.UNKNOWN_FORCES
     else:
         error = words.FORCE_ERROR.format(error=percent(max(frame.residual, 1e-6)))
     if frame.busy:
@@ -80,7 +82,7 @@ def draw_status(
         _Item(
             words.INCREMENT.format(increment=frame.increment),
             3,
-            words.INCREMENT.format(increment="0000"),
+            words.INCREMENT.format(increment="000"),
         ),
     ]
     if frame.grains_out:
@@ -175,7 +177,7 @@ def _draw_legend(painter: Painter, x: float, y: float, kinds: list[tuple[str, st
         painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
         if kind == "auxetic":
             zero, one = np.zeros(1), np.ones(1)
-            grain = (np.array([x + radius]), np.array([-y]), radius * one, zero, zero)
+            grain = ((x + radius) * one, -y * one, radius * one, zero, zero)
             marked = np.ones(1, dtype=np.bool_)
             ground = painter.theme.ground
             raster.draw_bow_ties(painter.canvas(), grain, zero, one, marked, ground, 1.0)

@@ -16,7 +16,8 @@ STOPPED = {
 }
 BROKEN = frozenset({"not finite", "collapsed"})
 FORCE_ERROR = "forces within {error}"
-NO_FORCES = "no forces yet"
+NO_FORCES = "no forces"
+UNKNOWN_FORCES = "forces not known yet"
 
 SEED = "seed {seed}"
 INCREMENT = "increment {increment}"
@@ -53,7 +54,7 @@ HELP = (
     ("Space", "pause"),
     ("S, →", "one increment"),
     ("R", "reset"),
-    ("1  2  3", "regular, auxetic, mixed"),
+    ("1  2  3", "packing"),
     ("P", "next packing"),
     ("N", "new seed"),
     ("A", "scripted drive"),

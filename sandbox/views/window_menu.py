@@ -28,7 +28,7 @@ class Menu:
         self.packings = tuple(packings)
         self.chosen = 0
         self.scroll = 0
-        self.hover_now = False  # is the mouse over something that can be clicked?
+        self._clickable = False  # is the mouse over something that can be clicked?
         self._places: MenuLayout | None = None
 
     def choose(self, scene: str) -> None:
@@ -62,7 +62,11 @@ class Menu:
         index = self._card_at(place)
         if index is not None:
             self.chosen = index
-        self.hover_now = index is not None or self._chip_at(place) is not None
+        self._clickable = index is not None or self._chip_at(place) is not None
+
+    def cursor(self) -> int:
+        """The system cursor for where the mouse is."""
+        return pygame.SYSTEM_CURSOR_HAND if self._clickable else pygame.SYSTEM_CURSOR_ARROW
 
     def click(self, place: tuple[int, int]) -> Choice:
         """The mouse was pressed there."""

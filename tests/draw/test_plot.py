@@ -1,0 +1,80 @@
+"""The force-stroke strip: axes, thinning, odd curves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sandbox.draw.painter import dashed
+from sandbox.draw.plot import Curve, finite_part, limits, thinned
+from sandbox.draw.render import Renderer
+from tests.draw.frames import curve, intruder_frame
+
+
+def test_thinning_keeps_every_peak_and_the_ends() -> None:
+    rng = np.random.default_rng(0)
+    x = np.linspace(0.0, 300.0, 200_000)
+    y = rng.normal(size=x.size)
+    y[12_345], y[54_321] = 99.0, -99.0
+    kept_x, kept_y = thinned(x, y)
+    assert kept_x.size <= 4 * 302
+    assert kept_y.max() == 99.0
+    assert kept_y.min() == -99.0
+    assert (kept_x[0], kept_x[-1]) == (x[0], x[-1])
+    assert np.all(np.diff(kept_x) >= 0)
+    columns = np.floor(x).astype(int)
+    for column in (0, 17, 150, 299):  # the drawn extent of a column is that of the data
+        inside = columns == column
+        drawn = np.floor(kept_x).astype(int) == column
+        assert kept_y[drawn].max() == y[inside].max()
+        assert kept_y[drawn].min() == y[inside].min()
+
+
+def test_thinning_follows_a_drive_that_turns_back() -> None:
+    x = np.concatenate((np.linspace(0, 50, 5000), np.linspace(50, 20, 5000)))
+    y = np.concatenate((np.ones(5000), np.full(5000, 2.0)))
+    kept_x, kept_y = thinned(x, y)
+    assert kept_x.size < 400
+    assert kept_x[kept_y == 2.0].min() == pytest.approx(20.0)
+
+
+def test_short_curve_is_left_alone() -> None:
+    x, y = np.arange(7.0), np.arange(7.0)
+    assert thinned(x, y)[0] is x
+
+
+def test_what_is_no_number_is_left_out() -> None:
+    stroke, force = finite_part(
+        Curve(np.array([0.0, 1.0, np.nan, 3.0]), np.array([1.0, np.inf, 2.0, 4.0]), 0)
+    )
+    assert stroke.tolist() == [0.0, 3.0]
+    assert force.tolist() == [1.0, 4.0]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_axes_hold_the_curve_and_zero(sign: float) -> None:
+    stroke, force = curve(200)
+    low, high, bottom, top = limits([(stroke, sign * force)])
+    assert low <= 0.0
+    assert high == stroke[-1]
+    assert bottom <= min((sign * force).min(), 0.0) + 1e-9
+    assert top >= max((sign * force).max(), 0.0) - 1e-9
+    assert limits([]) == (0.0, 1.0, 0.0, 0.02)
+
+
+@pytest.mark.parametrize("points", [0, 1, 2, 3, 5000])
+def test_any_number_of_points_can_be_drawn(points: int) -> None:
+    Renderer((640, 400)).draw(intruder_frame(6, points=points))
+
+
+def test_a_curve_of_bad_numbers_can_be_drawn() -> None:
+    bad = np.array([np.nan, np.inf, -np.inf, 1.0])
+    Renderer((640, 400)).draw(intruder_frame(6, curve_stroke=bad, curve_force=bad[::-1].copy()))
+
+
+def test_dashes_have_the_asked_length() -> None:
+    x = np.array([0.0, 30.0, 60.0])
+    ends = (x[:-1], np.zeros(2), x[1:], np.zeros(2))
+    x0, _, x1, _ = dashed(ends, 8.0, 4.0)
+    assert (x1 - x0).sum() == pytest.approx(40.0)
+    assert x0.min() == 0.0
