@@ -86,6 +86,7 @@ class App:
         self._toasts: list[tuple[float, str]] = []
         self._hinted = False  # has a person found out how to begin?
         self._dirty = True  # is there something new to draw?
+        self._splash = True  # is that what the window shows?
         self._drawn = 0.0
         self._serial = -1
         self._cursor: int | None = None
@@ -133,7 +134,7 @@ class App:
         if self._toasts and self._toasts[0][0] < now:
             self._toasts = [toast for toast in self._toasts if toast[0] >= now]
             self._dirty = True
-        moving = not self._warmup.ready or snapshot.phase == "building" or self.mouse.holding
+        moving = self._splash or snapshot.phase == "building" or self.mouse.holding
         if self._dirty or moving or now - self._drawn >= REST:
             self._draw(snapshot, now)
         self._show_cursor()
@@ -145,7 +146,8 @@ class App:
         self._rate.renew(now, self._clock.get_fps())
         begun = time.perf_counter()
         preparing = snapshot.phase == "building" and snapshot.frame is None
-        if not self._warmup.ready or (preparing and not self.show_menu):
+        self._splash = not self._warmup.ready or (preparing and not self.show_menu)
+        if self._splash:
             draw_splash(
                 self.renderer.surface,
                 self.renderer.theme,
