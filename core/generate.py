@@ -341,8 +341,8 @@ def _to_pressure(
     # In lengths of the large grain a shrinking box is a growing grain, and pressure [k] knows no length: grow the grains here,
     # and give the length back to the box at the end.
     start = packing
-    scale, low, high = 1.0, 0.0, math.inf
-    for _ in range(80):
+    scale, step, below = 1.0, 0.01, False
+    for _ in range(120):
         trial = packing.copy()
         trial.rest_radius = start.rest_radius * scale
         trial.state[2:] *= trial.rest_radius[0] / packing.rest_radius[0]
@@ -351,16 +351,10 @@ def _to_pressure(
         packing = trial
         if abs(reached - target) <= 0.01 * target:
             break
-        if reached < target:
-            low = scale
-        else:
-            high = scale
-        if math.isinf(high):
-            scale *= 1.01
-        elif low == 0.0:
-            scale *= 0.99
-        else:
-            scale = 0.5 * (low + high)
+        # Steps that shrink at each turn, and grow again on the way: not a bracket, since a rearrangement shifts the answer.
+        turned, below = below is not (reached < target), reached < target
+        step = 0.5 * step if turned else min(1.5 * step, 0.01)
+        scale *= 1.0 + step if below else 1.0 / (1.0 + step)
     else:
         raise InputError(
             f"a pressure of {target:g} k could not be reached within 1 %; try a value between 0.001 and 0.3"

@@ -26,7 +26,7 @@ def test_round_trip(nu: float, stiffness: float) -> None:
 
 @given(st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
 def test_round_trip_from_paper(ratio: float, softness: float) -> None:
-    nu, stiffness = material.from_paper(ratio, softness)
+    nu, stiffness = map(float, material.from_paper(ratio, softness))
     # For extreme pairs C − 2 drowns in the 2, or 1 − |ν| in the 1: what is left of their digits is what comes back.
     lost = 2.0 / (stiffness - 2.0) + (1.0 + ratio) / min(1.0, ratio)
     back = material.to_paper(nu, stiffness)

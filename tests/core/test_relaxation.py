@@ -220,7 +220,8 @@ def test_the_packing_changes_on_demand_only() -> None:
 
 def test_more_contacts_than_room() -> None:
     """Lists that turn out too short are made longer, with the same result as ever."""
-    packing = Packing(*np.random.default_rng(2).uniform(0.0, 1.0, (2, 60)), 1.0)
+    x, y = np.random.default_rng(2).uniform(0.0, 1.0, (2, 60))
+    packing = Packing(x, y)
     energy, forces = examples.forces(packing)
     d = np.hypot(packing.x[:, None] - packing.x, packing.y[:, None] - packing.y)
     overlap = (2.0 - d)[np.triu_indices(60, 1)]
