@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from core.contacts import add_contact_forces, grain_overlap, prepare
 from core.elasticity import finish
-from core.friction import add_friction_forces
+from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, touch
@@ -189,8 +189,7 @@ def relist(m, box, rigid, friction, skin):
     permute(m.grains.shape_stiffness, order, m.scratch)
     permute(m.identity, order, m.scratch_identity)
     if friction is not None:
-        for place in range(m.identity.shape[0]):
-            friction.place[m.identity[place]] = place
+        settle_places(m.identity, friction)
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin):
         return RIGID_FULL
     m.reference[:] = m.state
@@ -250,30 +249,29 @@ def evaluate(m, box, rigid, friction):
 @kernel
 def mean_contact_force(m, box, rigid):
     """Mean normal force of all contacts that carry one [k R]; 0 where there is none."""
+    state, support = m.state, m.support
+    width, offset = m.lists.width, m.lists.offset
+    neighbor, stiffness = m.lists.neighbor, m.lists.stiffness
     total = 0.0
     contacts = 0.0
-    count = m.lists.width
-    for t in range(count.shape[0]):
-        first = m.lists.offset[t]
-        for i in range(count[t]):
-            j = m.lists.neighbor[first + i]
-            f = m.lists.stiffness[first + i] * grain_overlap(m.state, m.support, i, j, box)[0]
+    for t in range(width.shape[0]):
+        first = offset[t]
+        for i in range(width[t]):
+            j = neighbor[first + i]
+            f = stiffness[first + i] * grain_overlap(state, support, i, j, box)[0]
             if f > 0.0:
                 total += 0.5 * f
                 contacts += 0.5
     if rigid is not None:
+        primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
+        contact_stiffness = m.grains.contact_stiffness
         for k in range(rigid.used[0]):
-            i = rigid.grain[k]
-            overlap = touch(
-                rigid.primitives[rigid.primitive[k]],
-                m.state[0, i],
-                m.state[1, i],
-                m.support[0, i],
-                m.support[1, i],
-                m.support[2, i],
-            )[0]
+            i = grain[k]
+            x, y = state[0, i], state[1, i]
+            s, u, v = support[0, i], support[1, i], support[2, i]
+            overlap = touch(primitives, primitive[k], x, y, s, u, v)[0]
             if overlap > 0.0:
-                total += m.grains.contact_stiffness[i] * overlap
+                total += contact_stiffness[i] * overlap
                 contacts += 1.0
     return total / contacts if contacts > 0.0 else 0.0
 

@@ -37,10 +37,10 @@ _GRAIN = 2**31
 
 
 class FrictionTerms(NamedTuple):
-    """Frictional contacts of one increment, (K,) each; grains are numbered as in the packing."""
+    """Frictional contacts of one increment, (K,) each: first those between grains, then those with bodies."""
 
-    i: Indices
-    j: Indices  # -1: a rigid body
+    i: Indices  # grain, numbered as in the packing
+    j: Indices  # the other grain, numbered as in the packing; -1: a rigid body
     tx: Floats
     ty: Floats
     arm_i: Floats  # h_i [R]
@@ -48,55 +48,109 @@ class FrictionTerms(NamedTuple):
     stiffness: Floats  # k_t [k]
     cap: Floats  # μ f_n [k R]
     offset: Floats  # slip when all coordinates are 0 [R]
+    pairs: Indices  # (1,) how many are between grains
     place: Indices  # (N,) where each grain of the packing stands in the minimiser
+    at_i: NDArray[np.uint32]  # place of grain i
+    at_j: NDArray[np.uint32]  # place of grain j; for a body anything
+    pull: Floats  # work space: tangential force on i against t [k R]
 
 
 @kernel
-def slip(state, terms, k):
-    """u of contact k [R]."""
-    i = terms.place[terms.i[k]]
-    u = terms.offset[k] + terms.tx[k] * state[0, i] + terms.ty[k] * state[1, i]
-    u += terms.arm_i[k] * state[5, i]
-    if terms.j[k] >= 0:
-        j = terms.place[terms.j[k]]
-        u += terms.arm_j[k] * state[5, j] - terms.tx[k] * state[0, j] - terms.ty[k] * state[1, j]
-    return u
+def settle_places(identity, terms):
+    """Follow the grains to where they stand now in the minimiser; ``identity`` (N,) is the grain at each place."""
+    place, i, j, at_i, at_j = terms.place, terms.i, terms.j, terms.at_i, terms.at_j
+    for k in range(identity.shape[0]):
+        place[identity[k]] = k
+    for k in range(i.shape[0]):
+        at_i[k] = place[i[k]]
+        at_j[k] = place[max(j[k], 0)]
 
 
-@kernel
-def add_friction_forces(state, force, terms):
-    """Add tangential forces to rows 0 and 1 and torques to row 5 of ``force``. Returns the energy [k R²]."""
+@kernel(noalias=True)
+def pair_pulls(at_i, at_j, x, y, turned, tx, ty, arm_i, arm_j, stiffness, cap, offset, pull):
+    """Tangential forces of contacts between grains into ``pull``; returns their energy [k R²]. Vectorises."""
     energy = 0.0
-    for k in range(terms.i.shape[0]):
-        u = slip(state, terms, k)
-        stiffness = terms.stiffness[k]
-        cap = terms.cap[k]
-        pull = stiffness * u
-        if pull > cap:
-            energy += cap * (u - 0.5 * cap / stiffness)
-            pull = cap
-        elif pull < -cap:
-            energy -= cap * (u + 0.5 * cap / stiffness)
-            pull = -cap
-        else:
-            energy += 0.5 * pull * u
-        i = terms.place[terms.i[k]]
-        force[0, i] -= pull * terms.tx[k]
-        force[1, i] -= pull * terms.ty[k]
-        force[5, i] -= pull * terms.arm_i[k]
-        if terms.j[k] >= 0:
-            j = terms.place[terms.j[k]]
-            force[0, j] += pull * terms.tx[k]
-            force[1, j] += pull * terms.ty[k]
-            force[5, j] -= pull * terms.arm_j[k]
+    for k in range(at_i.shape[0]):
+        i = at_i[k]
+        j = at_j[k]
+        u = offset[k] + tx[k] * (x[i] - x[j]) + ty[k] * (y[i] - y[j])
+        u += arm_i[k] * turned[i] + arm_j[k] * turned[j]
+        f = stiffness[k] * u
+        f = min(f, cap[k])
+        f = max(f, -cap[k])
+        energy += f * (u - 0.5 * f / stiffness[k])  # Huber: both branches in one
+        pull[k] = f
+    return energy
+
+
+@kernel(noalias=True)
+def body_pulls(at_i, x, y, turned, tx, ty, arm_i, stiffness, cap, offset, pull):
+    """The same for contacts with bodies, whose motion is prescribed and stands in ``offset``."""
+    energy = 0.0
+    for k in range(at_i.shape[0]):
+        i = at_i[k]
+        u = offset[k] + tx[k] * x[i] + ty[k] * y[i] + arm_i[k] * turned[i]
+        f = stiffness[k] * u
+        f = min(f, cap[k])
+        f = max(f, -cap[k])
+        energy += f * (u - 0.5 * f / stiffness[k])
+        pull[k] = f
     return energy
 
 
 @kernel
-def slips(state, terms, values):
-    """u of every contact into ``values`` (K,)."""
-    for k in range(terms.i.shape[0]):
-        values[k] = slip(state, terms, k)
+def add_friction_forces(state, force, terms):
+    """Add tangential forces to rows 0 and 1 and torques to row 5 of ``force``. Returns the energy [k R²].
+
+    Forces first, without a store that could alias, then the scatter: six times as fast as both in one loop.
+    """
+    x, y, turned = state[0], state[1], state[5]
+    fx, fy, torque = force[0], force[1], force[5]
+    at_i, at_j, tx, ty = terms.at_i, terms.at_j, terms.tx, terms.ty
+    arm_i, arm_j, pull = terms.arm_i, terms.arm_j, terms.pull
+    stiffness, cap, offset = terms.stiffness, terms.cap, terms.offset
+    n = terms.pairs[0]
+    energy = pair_pulls(
+        at_i[:n],
+        at_j[:n],
+        x,
+        y,
+        turned,
+        tx[:n],
+        ty[:n],
+        arm_i[:n],
+        arm_j[:n],
+        stiffness[:n],
+        cap[:n],
+        offset[:n],
+        pull[:n],
+    )
+    energy += body_pulls(
+        at_i[n:],
+        x,
+        y,
+        turned,
+        tx[n:],
+        ty[n:],
+        arm_i[n:],
+        stiffness[n:],
+        cap[n:],
+        offset[n:],
+        pull[n:],
+    )
+    for k in range(at_i.shape[0]):
+        i = at_i[k]
+        f = pull[k]
+        fx[i] -= f * tx[k]
+        fy[i] -= f * ty[k]
+        torque[i] -= f * arm_i[k]
+    for k in range(n):
+        j = at_j[k]
+        f = pull[k]
+        fx[j] += f * tx[k]
+        fy[j] += f * ty[k]
+        torque[j] -= f * arm_j[k]
+    return energy
 
 
 @dataclass(frozen=True)
@@ -233,7 +287,11 @@ class Friction:
             stiffness=stiffnesses,
             cap=caps,
             offset=np.concatenate([offset, offset_b]) + np.clip(remembered, -limit, limit),
+            pairs=np.array([len(pairs.i)]),
             place=np.arange(len(packing)),
+            at_i=np.zeros(len(keys), dtype=np.uint32),
+            at_j=np.zeros(len(keys), dtype=np.uint32),
+            pull=np.zeros(len(keys)),
         )
         return FrozenContacts(
             terms=terms,
@@ -246,9 +304,12 @@ class Friction:
     def end(self, frozen: FrozenContacts, packing: Packing, turned: Floats) -> FrictionForces:
         """Remember the slips of a relaxed packing whose grains turned by ``turned`` (N,) [rad]; the forces they stand for."""
         terms = frozen.terms
-        state = np.concatenate([packing.state, turned[None]])
-        u = np.empty(len(terms.i))
-        slips(state, terms._replace(place=np.arange(len(packing))), u)
+        u = terms.offset + terms.tx * packing.x[terms.i] + terms.ty * packing.y[terms.i]
+        u += terms.arm_i * turned[terms.i]
+        pair = terms.j >= 0
+        j = terms.j[pair]
+        u[pair] += terms.arm_j[pair] * turned[j]
+        u[pair] -= terms.tx[pair] * packing.x[j] + terms.ty[pair] * packing.y[j]
         limit = terms.cap / terms.stiffness
         sliding = np.abs(u) >= limit
         held = np.clip(u, -limit, limit)

@@ -104,6 +104,8 @@ def pack(
         packing_fraction = 0.84
     if not 0.01 <= packing_fraction <= 1.5:
         raise InputError("the packing fraction must lie between 0.01 and 1.5")
+    if count is not None and count < 0:
+        raise InputError("the number of grains must be 0 or more")
     random = np.random.default_rng(seed)
     world = world or RigidWorld()
     if outline is None and box is None:

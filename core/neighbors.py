@@ -103,7 +103,7 @@ def search_cells(state, skin, lists, box):
     rows = int(min(max(height / reach, 1.0), most))
     cell_width = width / columns if width > 0.0 else reach
     cell_height = height / rows if height > 0.0 else reach
-    start = lists.cell_start
+    start, cell_of, cell_order = lists.cell_start, lists.cell_of, lists.cell_order
     for c in range(columns * rows + 1):
         start[c] = 0
     for i in range(grains):
@@ -117,13 +117,13 @@ def search_cells(state, skin, lists, box):
             x = wrap(x, box[0], box[1])
         column = min(max(int(x / cell_width), 0), columns - 1)
         row = min(max(int(y / cell_height), 0), rows - 1)
-        lists.cell_of[i] = row * columns + column
-        start[lists.cell_of[i] + 1] += 1
+        cell_of[i] = row * columns + column
+        start[cell_of[i] + 1] += 1
     for c in range(columns * rows):
         start[c + 1] += start[c]
     for i in range(grains):
-        c = lists.cell_of[i]
-        lists.cell_order[start[c]] = i
+        c = cell_of[i]
+        cell_order[start[c]] = i
         start[c] += 1
     for c in range(columns * rows, 0, -1):
         start[c] = start[c - 1]
@@ -159,7 +159,9 @@ def find_pairs(state, skin, lists, box):
         wrap_x = box[1] > 0.0
         wrap_y = box[3] > 0.0
         sheared = box[4] != 0.0
-    capacity = lists.first.shape[0]
+    cell_start, cell_order = lists.cell_start, lists.cell_order
+    first, second = lists.first, lists.second
+    capacity = first.shape[0]
     pairs = 0
     for row in range(rows):
         for column in range(columns):
@@ -192,18 +194,18 @@ def find_pairs(state, skin, lists, box):
                     there = other_row * columns + c
                     if there < here:
                         continue
-                    for a in range(lists.cell_start[here], lists.cell_start[here + 1]):
-                        i = lists.cell_order[a]
-                        begin = lists.cell_start[there]
+                    for a in range(cell_start[here], cell_start[here + 1]):
+                        i = cell_order[a]
+                        begin = cell_start[there]
                         if there == here:
                             begin = a + 1
-                        for b in range(begin, lists.cell_start[there + 1]):
-                            j = lists.cell_order[b]
+                        for b in range(begin, cell_start[there + 1]):
+                            j = cell_order[b]
                             if near(state, i, j, skin, box):
                                 if pairs == capacity:
                                     return -1
-                                lists.first[pairs] = i
-                                lists.second[pairs] = j
+                                first[pairs] = i
+                                second[pairs] = j
                                 pairs += 1
     return pairs
 
@@ -215,13 +217,16 @@ def rebuild(state, contact_stiffness, skin, lists, box):
     pairs = find_pairs(state, skin, lists, box)
     if pairs < 0:
         return PAIRS_FULL
-    slots = lists.width.shape[0]
-    degree = lists.degree
+    # Every array is fetched once: inside a loop each look into the tuple would cost two atomic reference counts.
+    width, offsets, neighbor, stiffness = lists.width, lists.offset, lists.neighbor, lists.stiffness
+    degree, place, order, filled = lists.degree, lists.place, lists.order, lists.filled
+    first, second, cell_order = lists.first, lists.second, lists.cell_order
+    slots = width.shape[0]
     for i in range(grains):
         degree[i] = 0
     for k in range(pairs):
-        degree[lists.first[k]] += 1
-        degree[lists.second[k]] += 1
+        degree[first[k]] += 1
+        degree[second[k]] += 1
     start = lists.start
     for t in range(slots + 2):
         start[t] = 0
@@ -235,30 +240,30 @@ def rebuild(state, contact_stiffness, skin, lists, box):
     offset = 0
     for t in range(slots):
         # Grains with more than t neighbours stand before all others.
-        lists.width[t] = start[slots - t]
-        lists.offset[t] = offset
-        offset += (lists.width[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
-    if offset > lists.neighbor.shape[0]:
+        width[t] = start[slots - t]
+        offsets[t] = offset
+        offset += (width[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
+    if offset > neighbor.shape[0]:
         return PAIRS_FULL
     for a in range(grains):
-        i = lists.cell_order[a]
+        i = cell_order[a]
         t = slots - degree[i]
-        lists.place[i] = start[t]
-        lists.order[start[t]] = i
+        place[i] = start[t]
+        order[start[t]] = i
         start[t] += 1
-        lists.filled[i] = 0
+        filled[i] = 0
     for k in range(pairs):
-        i = lists.first[k]
-        j = lists.second[k]
+        i = first[k]
+        j = second[k]
         ci = contact_stiffness[i]
         cj = contact_stiffness[j]
-        stiffness = 2.0 * ci * cj / (ci + cj)
-        at = lists.offset[lists.filled[i]] + lists.place[i]
-        lists.neighbor[at] = lists.place[j]
-        lists.stiffness[at] = stiffness
-        lists.filled[i] += 1
-        at = lists.offset[lists.filled[j]] + lists.place[j]
-        lists.neighbor[at] = lists.place[i]
-        lists.stiffness[at] = stiffness
-        lists.filled[j] += 1
+        contact = 2.0 * ci * cj / (ci + cj)
+        at = offsets[filled[i]] + place[i]
+        neighbor[at] = place[j]
+        stiffness[at] = contact
+        filled[i] += 1
+        at = offsets[filled[j]] + place[j]
+        neighbor[at] = place[i]
+        stiffness[at] = contact
+        filled[j] += 1
     return FIT

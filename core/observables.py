@@ -75,12 +75,13 @@ def _measure_pairs(state, support, stiffness, pairs, first, second, box, values)
 @kernel
 def _measure_rigid(state, support, stiffness, rigid, values):
     """Fill rows fx, fy, f, Δ, x, y of ``values`` (6, K) for grain–body contacts, packed to the front; returns their number."""
+    primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     used = 0
     for k in range(rigid.used[0]):
-        i = rigid.grain[k]
-        row = rigid.primitives[rigid.primitive[k]]
+        i = grain[k]
+        m = primitive[k]
         overlap, nx, ny, h, slope = rigid_contacts.touch(
-            row, state[0, i], state[1, i], support[0, i], support[1, i], support[2, i]
+            primitives, m, state[0, i], state[1, i], support[0, i], support[1, i], support[2, i]
         )
         if overlap > 0.0:
             f = stiffness[i] * overlap
@@ -88,18 +89,18 @@ def _measure_rigid(state, support, stiffness, rigid, values):
             values[1, used] = f * (ny - slope * nx)
             values[2, used] = f
             values[3, used] = overlap
-            if row[0] == rigid_contacts.DISC:
+            if primitives[m, 0] == rigid_contacts.DISC:
                 # The tangential part of this law turns the grain, not the disc: on the body it acts at the centre.
-                values[4, used] = row[1]
-                values[5, used] = row[2]
+                values[4, used] = primitives[m, 1]
+                values[5, used] = primitives[m, 2]
             else:
                 _, turn = rigid_contacts.support(
                     support[0, i], support[1, i], support[2, i], nx, ny
                 )
                 values[4, used] = state[0, i] - h * nx + turn * ny
                 values[5, used] = state[1, i] - h * ny - turn * nx
-            rigid.grain[used] = i
-            rigid.primitive[used] = rigid.primitive[k]
+            grain[used] = i
+            primitive[used] = m
             used += 1
     return used
 

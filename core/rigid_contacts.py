@@ -107,21 +107,21 @@ def nearest_direction(s, u, v, dx, dy):
 
 
 @kernel
-def touch(primitive, x, y, s, u, v):
-    """Contact of one grain with one primitive: (overlap, nx, ny, h, slope), overlap < 0 where they do not touch.
+def touch(primitives, m, x, y, s, u, v):
+    """Contact of one grain with primitive m: (overlap, nx, ny, h, slope), overlap < 0 where they do not touch.
 
     n points from the body to the grain. ``slope`` is dh/dφ for a disc, whose n turns as the grain moves, and 0 otherwise.
     """
-    kind = primitive[0]
-    dx = x - primitive[1]
-    dy = y - primitive[2]
-    radius = primitive[7]
+    kind = primitives[m, 0]
+    dx = x - primitives[m, 1]
+    dy = y - primitives[m, 2]
+    radius = primitives[m, 7]
     if kind == EDGE:
-        ux = primitive[3]
-        uy = primitive[4]
+        ux = primitives[m, 3]
+        uy = primitives[m, 4]
         if beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
-        if beyond(s, u, v, x - primitive[5], y - primitive[6], ux, uy) > 0.0:
+        if beyond(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
         distance = ux * dy - uy * dx
         side = 1.0 if distance >= 0.0 else -1.0
@@ -137,10 +137,10 @@ def touch(primitive, x, y, s, u, v):
         ny = dy / r
         h, slope = support(s, u, v, nx, ny)
         return h + radius - r, nx, ny, h, slope / r
-    if beyond(s, u, v, dx, dy, primitive[3], primitive[4]) <= 0.0:
+    if beyond(s, u, v, dx, dy, primitives[m, 3], primitives[m, 4]) <= 0.0:
         return -1.0, 0.0, 0.0, 1.0, 0.0
-    wx = primitive[5]
-    wy = primitive[6]
+    wx = primitives[m, 5]
+    wy = primitives[m, 6]
     if (wx != 0.0 or wy != 0.0) and beyond(s, u, v, dx, dy, wx, wy) <= 0.0:
         return -1.0, 0.0, 0.0, 1.0, 0.0
     nx, ny = nearest_direction(s, u, v, dx, dy)
@@ -151,26 +151,23 @@ def touch(primitive, x, y, s, u, v):
 @kernel
 def find_rigid_pairs(state, rigid, reach):
     """List the grains that may touch a primitive before they have moved or grown by ``reach`` [R]. Returns False if too many."""
+    primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
+    x, y, p, q1, q2 = state[0], state[1], state[2], state[3], state[4]
     used = 0
-    capacity = rigid.grain.shape[0]
-    for m in range(rigid.primitives.shape[0]):
-        kind = rigid.primitives[m, 0]
-        x0 = rigid.primitives[m, 1]
-        y0 = rigid.primitives[m, 2]
-        ux = rigid.primitives[m, 3]
-        uy = rigid.primitives[m, 4]
+    capacity = grain.shape[0]
+    for m in range(primitives.shape[0]):
+        kind = primitives[m, 0]
+        x0 = primitives[m, 1]
+        y0 = primitives[m, 2]
+        ux = primitives[m, 3]
+        uy = primitives[m, 4]
         length = 0.0
         if kind == EDGE:
-            length = (rigid.primitives[m, 5] - x0) * ux + (rigid.primitives[m, 6] - y0) * uy
+            length = (primitives[m, 5] - x0) * ux + (primitives[m, 6] - y0) * uy
         for i in range(state.shape[1]):
-            extent = (
-                state[2, i]
-                + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2)
-                + rigid.primitives[m, 7]
-                + reach
-            )
-            dx = state[0, i] - x0
-            dy = state[1, i] - y0
+            extent = p[i] + math.sqrt(q1[i] ** 2 + q2[i] ** 2) + primitives[m, 7] + reach
+            dx = x[i] - x0
+            dy = y[i] - y0
             if kind == EDGE:
                 along = min(max(dx * ux + dy * uy, 0.0), length)
                 dx -= along * ux
@@ -178,8 +175,8 @@ def find_rigid_pairs(state, rigid, reach):
             if dx * dx + dy * dy < extent * extent:
                 if used == capacity:
                     return False
-                rigid.grain[used] = i
-                rigid.primitive[used] = m
+                grain[used] = i
+                primitive[used] = m
                 used += 1
     rigid.used[0] = used
     return True
@@ -188,25 +185,23 @@ def find_rigid_pairs(state, rigid, reach):
 @kernel
 def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid):
     """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
+    # Every array is fetched once: inside the loop each look into the tuple would cost two atomic reference counts.
+    primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
+    x, y = state[0], state[1]
+    s, u, v = support_coefficients[0], support_coefficients[1], support_coefficients[2]
+    fx, fy, a, b, d = force[0], force[1], force[2], force[3], force[4]
     energy = 0.0
     for k in range(rigid.used[0]):
-        i = rigid.grain[k]
-        overlap, nx, ny, h, slope = touch(
-            rigid.primitives[rigid.primitive[k]],
-            state[0, i],
-            state[1, i],
-            support_coefficients[0, i],
-            support_coefficients[1, i],
-            support_coefficients[2, i],
-        )
+        i = grain[k]
+        overlap, nx, ny, h, slope = touch(primitives, primitive[k], x[i], y[i], s[i], u[i], v[i])
         if overlap <= 0.0:  # written so that nan passes, and is found
             continue
         f = contact_stiffness[i] * overlap
         energy += 0.5 * f * overlap
-        force[0, i] += f * (nx + slope * ny)
-        force[1, i] += f * (ny - slope * nx)
+        fx[i] += f * (nx + slope * ny)
+        fy[i] += f * (ny - slope * nx)
         g = f / h
-        force[2, i] += g
-        force[3, i] += g * (nx * nx - ny * ny)
-        force[4, i] += g * 2.0 * nx * ny
+        a[i] += g
+        b[i] += g * (nx * nx - ny * ny)
+        d[i] += g * 2.0 * nx * ny
     return energy
