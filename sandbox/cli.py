@@ -7,6 +7,7 @@ before anything is compiled.
 from __future__ import annotations
 
 import argparse
+import errno
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -27,6 +28,7 @@ FILM_SUFFIXES = (".mp4", ".gif", ".png")
 OK = 0
 DIFFERENT = 1  # a replay came out otherwise than its log says
 USER_MISTAKE = 2
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
 INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
 
@@ -47,6 +49,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Whoever read the output (head, a pager) has seen enough. Python flushes once more at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return OK
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        where = f" for {error.filename}" if error.filename else ""
+        print(f"error: no room left on the disk{where}: free some and try again", file=sys.stderr)
+        return USER_MISTAKE
 
 
 def parse(words: Sequence[str]) -> argparse.Namespace:

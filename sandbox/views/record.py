@@ -52,7 +52,7 @@ def record(session: Session, steps: int, output: Output) -> Outcome:
     with build_bar() as progress:
         session.build(progress)
     session.submit(Protocol(True))
-    return run(session, lambda: finish_increment(session), steps, output)
+    return run(session, slices(session), steps, output)
 
 
 def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
@@ -62,29 +62,26 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
     with build_bar() as progress:
         states = replay(log, progress)
         session = next(states)
-    outcome = run(session, lambda: next(states, None) is not None, log.end, output)
+    outcome = run(session, (True for _ in states), log.end, output)
     if not outcome.interrupted:
         next(states, None)  # commands that came after the last increment
     return session, outcome
 
 
-def finish_increment(session: Session) -> bool:
-    """Work until an increment is done; False if there is nothing to do any more.
-
-    Ctrl-C is heard between two slices, when no increment is half booked.
-    """
+def slices(session: Session) -> Iterator[bool]:
+    """Work slice by slice until there is nothing to do; True where an increment was finished."""
     while True:
-        with deferred():
-            if session.advance(SLICE):
-                return True
-            if session.idle:
-                return False
+        finished = session.advance(SLICE)
+        if not finished and session.idle:
+            return
+        yield finished
 
 
-def run(session: Session, step: Callable[[], bool], steps: int, output: Output | None) -> Outcome:
-    """Call ``step`` until it returns False, or ``steps`` times; write a frame after each.
+def run(session: Session, work: Iterator[bool], steps: int, output: Output | None) -> Outcome:
+    """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
-    The session is built already. The table is written at the end, also after Ctrl-C.
+    The session is built already. A frame is written after each increment, the table at the end.
+    Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
     """
     from tqdm import tqdm
 
@@ -98,12 +95,16 @@ def run(session: Session, step: Callable[[], bool], steps: int, output: Output |
             writer or nullcontext(),
             tqdm(total=steps, desc=session.scene.name, unit="increment", **_bar_options()) as bar,
         ):
-            while increments < steps and step():
-                if writer is not None and draw is not None:
-                    writer.write(draw(session.frame()))
+            while increments < steps:
                 with deferred():
-                    increments += 1
-                    bar.update()
+                    finished = next(work, None)
+                    if finished is None:
+                        break
+                    if finished:
+                        if writer is not None and draw is not None:
+                            writer.write(draw(session.frame()))
+                        increments += 1
+                        bar.update()
     except KeyboardInterrupt:
         interrupted = True
     if table and increments:

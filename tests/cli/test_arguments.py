@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from pathlib import Path
@@ -153,3 +154,16 @@ def test_no_command_is_play() -> None:
     options = cli.parse([])
     assert options.command == "play"
     assert options.scene is None
+
+
+def test_a_full_disk_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(options: object) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device", "run.jsonl")
+
+    monkeypatch.setattr(cli, "_list", fail)
+    assert cli.main(["list"]) == 2
+    assert capsys.readouterr().err == (
+        "error: no room left on the disk for run.jsonl: free some and try again\n"
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -72,7 +73,7 @@ def session(monkeypatch: pytest.MonkeyPatch) -> Cardboard:
 
 def run(session: Any, steps: int, film: Path | None, table: Path | None) -> Outcome:
     output = Output(film, table, SIZE)
-    return record.run(session, lambda: record.finish_increment(session), steps, output)
+    return record.run(session, record.slices(session), steps, output)
 
 
 def test_a_frame_and_a_row_per_increment(tmp_path: Path, session: Cardboard) -> None:
@@ -95,17 +96,18 @@ def test_the_run_ends_with_its_protocol(tmp_path: Path, session: Cardboard) -> N
     assert (outcome.increments, outcome.frames, outcome.interrupted) == (2, 2, False)
 
 
-def test_ctrl_c_keeps_what_was_done(tmp_path: Path, session: Cardboard) -> None:
+def test_ctrl_c_leaves_as_many_frames_as_increments(tmp_path: Path, session: Cardboard) -> None:
+    """Wherever in an increment it comes: here after the state has changed, before it was drawn."""
+
     def press(increment: int) -> None:
         if increment == 3:
-            raise KeyboardInterrupt
+            signal.raise_signal(signal.SIGINT)
 
     session.on_increment = press
     film, table = tmp_path / "film.mp4", tmp_path / "run.csv"
-    outcome = run(session, 9, film, table)
-    assert (outcome.increments, outcome.frames, outcome.interrupted) == (2, 2, True)
-    assert len(imageio.v2.mimread(film)) == 2
-    assert table.exists()
+    assert run(session, 9, film, table) == Outcome(3, 3, 4, interrupted=True)
+    assert len(imageio.v2.mimread(film)) == 3
+    assert len(table.read_text().split()) == 1 + 4
 
 
 def test_ctrl_c_before_the_first_increment_writes_nothing(
