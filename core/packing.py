@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import os
+import struct
 import zipfile
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +26,20 @@ FORMAT = "auxetic-sandbox packing"
 FORMAT_VERSION = 1
 MAX_GRAINS = 2_000_000
 MAX_LENGTH = 1e9
+# What zipfile, zlib and numpy raise for damaged and for hostile files.
+UNREADABLE = (
+    ArithmeticError,
+    EOFError,
+    KeyError,
+    MemoryError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 
 
 @dataclass(frozen=True)
@@ -111,12 +127,12 @@ class Packing:
             raise InputError(f"{count} grains are more than this program holds ({MAX_GRAINS})")
         if self.state.shape != (5, count) or self.label.shape != (count,):
             raise InputError("a packing's arrays disagree about the number of grains")
+        if not np.all((self.rest_radius > 1e-6) & (self.rest_radius < MAX_LENGTH)):
+            raise InputError("rest radii must be greater than 1e-6 R and finite")
         if not np.all(np.isfinite(self.state)) or np.any(np.abs(self.state) > MAX_LENGTH):
             raise InputError(
                 f"grain positions and shapes must be finite and within ±{MAX_LENGTH:g} R"
             )
-        if not np.all((self.rest_radius > 1e-6) & (self.rest_radius < MAX_LENGTH)):
-            raise InputError("rest radii must be greater than 1e-6 R and finite")
         if np.unique(self.label).size != count:
             raise InputError("grain labels must differ from one another")
         check_material(self.poisson_ratio, self.contact_stiffness)
@@ -217,6 +233,9 @@ class Packing:
         path = Path(path)
         try:
             with zipfile.ZipFile(path) as archive:
+                methods = {info.compress_type for info in archive.infolist()}
+                if not methods <= {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
+                    raise InputError(f"{path}: not a packing file of this program")
                 unpacked = sum(info.file_size for info in archive.infolist())
                 if unpacked > 16 * 8 * MAX_GRAINS:
                     raise InputError(
@@ -235,14 +254,15 @@ class Packing:
                 packing.rest_radius = _floats(data["rest_radius"], path)
                 packing.poisson_ratio = _floats(data["poisson_ratio"], path)
                 packing.contact_stiffness = _floats(data["contact_stiffness"], path)
-                packing.label = np.array(data["label"], dtype=np.int64)
+                packing.label = _whole_numbers(data["label"], path)
                 box = _floats(data["box"], path)
         except InputError:
             raise
         except FileNotFoundError:
             raise InputError(f"{path}: no such file") from None
-        except (OSError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
-            raise InputError(f"{path}: not a readable packing file ({error})") from None
+        except UNREADABLE as error:
+            reason = " ".join(str(error).split())
+            raise InputError(f"{path}: not a readable packing file ({reason})") from None
         if box.shape not in ((0,), (3,)) or packing.state.ndim != 2:
             raise InputError(f"{path}: malformed packing file (wrong array shapes)")
         packing.box = PeriodicBox(*map(float, box)) if box.size else None
@@ -256,6 +276,14 @@ class Packing:
             )
         packing.validate()
         return packing
+
+
+def _whole_numbers(array: NDArray[np.generic], path: Path) -> NDArray[np.int64]:
+    if array.dtype.kind not in "iu":
+        raise InputError(
+            f"{path}: malformed packing file (labels are {array.dtype}, not whole numbers)"
+        )
+    return np.array(array, dtype=np.int64)
 
 
 def _floats(array: NDArray[np.generic], path: Path) -> Floats:
