@@ -90,8 +90,7 @@ class Quasistatic:
         self._start: Floats = packing.state.copy()
         self._placement: Floats = world.placement()
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
-        self._last_length = 0.0
-        self._length = 0.0
+        self._last_moved: dict[str, Point] = {}
         self._moved: dict[str, Point] = {}
         self._stopped: dict[str, str] = {}
 
@@ -115,7 +114,6 @@ class Quasistatic:
             if stopped is not None:
                 self._stopped[name] = stopped
         self._start = self.packing.state.copy()
-        self._length = float(np.sqrt(sum(dx * dx + dy * dy for dx, dy in self._moved.values())))
         self._freeze_friction()
         self._predict()
         primitives, _ = self.world.primitives()
@@ -149,7 +147,7 @@ class Quasistatic:
             forces = self.friction.end(self._frozen, self.packing, self._relaxation.turned())
         self._relaxation = None
         self._last = self.packing.state - self._start
-        self._last_length = self._length
+        self._last_moved = self._moved
         return self._observe(report, forces)
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
@@ -173,14 +171,29 @@ class Quasistatic:
             self.friction.select(~gone)
 
     def _predict(self) -> None:
-        """Start from the displacement of the increment before, scaled to the step: saves a tenth to a third of the work."""
-        if self._last_length > 0.0 and self._length > 0.0:
-            ratio = min(self._length / self._last_length, 1.0)
-            # A rearrangement is not going to happen twice: no grain is sent further than the body moves.
-            change = self._last * ratio
-            distance = np.sqrt(change[0] ** 2 + change[1] ** 2)
-            change *= np.minimum(1.0, self._length / np.maximum(distance, 1e-12))
-            self.packing.state += change
+        """Start from the displacement of the increment before, scaled to the step: saves a tenth to a third of the work.
+
+        Only as far as the bodies go on as they went, and only for grains that touch something: a grain left free by a
+        body that turned back has no reason to fly on.
+        """
+        before = sum(dx * dx + dy * dy for dx, dy in self._last_moved.values())
+        now = sum(dx * dx + dy * dy for dx, dy in self._moved.values())
+        along = sum(
+            dx * self._last_moved[name][0] + dy * self._last_moved[name][1]
+            for name, (dx, dy) in self._moved.items()
+            if name in self._last_moved
+        )
+        if along <= 0.0:
+            return
+        change = self._last * min(along / before, 1.0)
+        pairs, bodies = self._contacts or self.contacts()
+        held = np.zeros(len(self.packing))
+        for grains in (pairs.i, pairs.j, bodies.grain):
+            held[grains] = 1.0
+        # A rearrangement is not going to happen twice: no grain is sent further than the bodies move.
+        distance = np.sqrt(change[0] ** 2 + change[1] ** 2)
+        change *= held * np.minimum(1.0, np.sqrt(now) / np.maximum(distance, 1e-12))
+        self.packing.state += change
 
     def _freeze_friction(self) -> None:
         """Contacts as they were before the bodies moved, for the lagged friction of this increment."""
