@@ -24,7 +24,7 @@ from core.elasticity import finish
 from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
-from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, touch
+from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
 
@@ -190,7 +190,7 @@ def relist(m, box, rigid, friction, skin):
     permute(m.identity, order, m.scratch_identity)
     if friction is not None:
         settle_places(m.identity, friction)
-    if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin):
+    if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
         return RIGID_FULL
     m.reference[:] = m.state
     m.control[MOVED] = 0.0
@@ -199,7 +199,20 @@ def relist(m, box, rigid, friction, skin):
 
 
 @kernel
-def evaluate(m, box, rigid, friction):
+def add_weight(x, y, rest_area, fx, fy, gravity):
+    """Weights ``gravity`` · R0² [k R], gravity in [k/R], into fx, fy; returns their potential energy [k R²]."""
+    energy = 0.0
+    for i in range(x.shape[0]):
+        wx = gravity[0] * rest_area[i]
+        wy = gravity[1] * rest_area[i]
+        fx[i] += wx
+        fy[i] += wy
+        energy -= wx * x[i] + wy * y[i]
+    return energy
+
+
+@kernel
+def evaluate(m, box, rigid, friction, gravity):
     """Forces of every term that the scene has, into ``force``; returns the energy [k R²]."""
     state = m.state
     force = m.force
@@ -227,7 +240,9 @@ def evaluate(m, box, rigid, friction):
         box,
     )
     if rigid is not None:
-        energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid)
+        energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid, box)
+    if gravity is not None:
+        energy += add_weight(state[0], state[1], m.grains.rest_area, force[0], force[1], gravity)
     if friction is not None:
         force[5] = 0.0
         energy += add_friction_forces(state, force, friction)
@@ -267,7 +282,7 @@ def mean_contact_force(m, box, rigid):
         contact_stiffness = m.grains.contact_stiffness
         for k in range(rigid.used[0]):
             i = grain[k]
-            x, y = state[0, i], state[1, i]
+            x, y = image(primitives, primitive[k], state[0, i], state[1, i], box)
             s, u, v = support[0, i], support[1, i], support[2, i]
             overlap = touch(primitives, primitive[k], x, y, s, u, v)[0]
             if overlap > 0.0:
@@ -277,10 +292,10 @@ def mean_contact_force(m, box, rigid):
 
 
 @kernel
-def run(m, box, rigid, friction, limits, max_iterations):
+def run(m, box, rigid, friction, gravity, limits, max_iterations):
     """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE call ``relist``.
 
-    ``box``, ``rigid`` and ``friction`` are None where the scene has no such term, and then no code for them exists.
+    ``box``, ``rigid``, ``friction`` and ``gravity`` are None where the scene has no such term; then no code for it exists.
     """
     control = m.control
     bits = control.view(np.int64)
@@ -306,7 +321,7 @@ def run(m, box, rigid, friction, limits, max_iterations):
             control[PENDING] = 1.0  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
         control[PENDING] = 0.0
-        control[ENERGY] = evaluate(m, box, rigid, friction)
+        control[ENERGY] = evaluate(m, box, rigid, friction, gravity)
         if np.isnan(control[START_ENERGY]):
             control[START_ENERGY] = control[ENERGY]
         power, force_square, speed_square = second_kick(velocity, force, inverse_mass, 0.5 * dt)

@@ -348,7 +348,7 @@ def _body_normals(rows: Floats, packing: Packing, bodies: RigidContacts) -> tupl
     """Unit normals from grains to bodies: along the force, or for a disc (whose law is not central) along the line of centres."""
     size = np.hypot(bodies.fx, bodies.fy)
     mx, my = -bodies.fx / size, -bodies.fy / size
-    cx, cy = rows[:, 1] - packing.x[bodies.grain], rows[:, 2] - packing.y[bodies.grain]
+    cx, cy = bodies.x - packing.x[bodies.grain], bodies.y - packing.y[bodies.grain]
     r = np.maximum(np.hypot(cx, cy), 1e-300)
     disc = rows[:, 0] == DISC
     return np.where(disc, cx / r, mx), np.where(disc, cy / r, my)

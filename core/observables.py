@@ -41,7 +41,7 @@ class RigidContacts:
     normal_force: Floats  # C Δ [k R]
     overlap: Floats  # Δ [R]
     x: Floats  # a point on the line of action [R]: where they touch
-    y: Floats
+    y: Floats  # in the image nearest to the grain
 
 
 @kernel
@@ -73,15 +73,16 @@ def _measure_pairs(state, support, stiffness, pairs, first, second, box, values)
 
 
 @kernel
-def _measure_rigid(state, support, stiffness, rigid, values):
+def _measure_rigid(state, support, stiffness, rigid, box, values):
     """Fill rows fx, fy, f, Δ, x, y of ``values`` (6, K) for grain–body contacts, packed to the front; returns their number."""
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     used = 0
     for k in range(rigid.used[0]):
         i = grain[k]
         m = primitive[k]
+        x, y = rigid_contacts.image(primitives, m, state[0, i], state[1, i], box)
         overlap, nx, ny, h, slope = rigid_contacts.touch(
-            primitives, m, state[0, i], state[1, i], support[0, i], support[1, i], support[2, i]
+            primitives, m, x, y, support[0, i], support[1, i], support[2, i]
         )
         if overlap > 0.0:
             f = stiffness[i] * overlap
@@ -91,8 +92,8 @@ def _measure_rigid(state, support, stiffness, rigid, values):
             values[3, used] = overlap
             if primitives[m, 0] == rigid_contacts.DISC:
                 # The tangential part of this law turns the grain, not the disc: on the body it acts at the centre.
-                values[4, used] = primitives[m, 1]
-                values[5, used] = primitives[m, 2]
+                values[4, used] = primitives[m, 1] + state[0, i] - x
+                values[5, used] = primitives[m, 2] + state[1, i] - y
             else:
                 _, turn = rigid_contacts.support(
                     support[0, i], support[1, i], support[2, i], nx, ny
@@ -143,15 +144,15 @@ def grain_contacts(packing: Packing) -> GrainContacts:
 def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
     rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
-    while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0):
+    box = None if packing.box is None else packing.box.kernel_form()
+    while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0, box):
         room = 2 * len(rigid.grain)
         rigid = rigid._replace(
             grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
         )
     values = np.empty((6, int(rigid.used[0])))
-    used = _measure_rigid(
-        packing.state, support_coefficients(packing), packing.contact_stiffness, rigid, values
-    )
+    support = support_coefficients(packing)
+    used = _measure_rigid(packing.state, support, packing.contact_stiffness, rigid, box, values)
     return RigidContacts(
         rigid.grain[:used].copy(), rigid.primitive[:used].copy(), *values[:, :used]
     )

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
-from core.packing import Packing
+from core.packing import Packing, PeriodicBox
 from core.relaxation import (
-    DEFAULT_FORCE_FLOOR,
     DEFAULT_SKIN,
     DEFAULT_TOLERANCE,
     Relaxation,
@@ -30,6 +29,9 @@ from core.rigid import Point, RigidWorld
 Floats = NDArray[np.float64]
 
 DEFAULT_STEP = 0.05  # [R]
+DEFAULT_FORCE_FLOOR = (
+    1e-2  # [k R] of the mean contact force; below it a residual is no longer relative to that
+)
 LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a body past a grain
 
 
@@ -72,8 +74,9 @@ class Quasistatic:
         world: RigidWorld,
         settings: Settings | None = None,
         friction: Friction | None = None,
+        gravity: Point | None = None,
     ) -> None:
-        """``friction`` None: no friction, and nothing of it is computed. Raises InputError if the step is too long."""
+        """``friction``, ``gravity`` [k/R] None: nothing of them is computed. Raises InputError if the step is too long."""
         self.packing = packing
         self.world = world
         self.settings = settings or Settings()
@@ -84,10 +87,12 @@ class Quasistatic:
             )
         self.reactions = np.zeros((len(world.bodies), 3))
         self.friction = friction
+        self.gravity = gravity
         self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
+        self._start_box = packing.box
         self._placement: Floats = world.placement()
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._last_moved: dict[str, Point] = {}
@@ -99,8 +104,11 @@ class Quasistatic:
         """True while an increment is begun and not finished."""
         return self._relaxation is not None
 
-    def begin(self, targets: dict[str, Point]) -> None:
-        """Move each named body one step towards its target and start to relax. With no targets: relax where things stand."""
+    def begin(self, targets: dict[str, Point], box: PeriodicBox | None = None) -> None:
+        """Move each named body one step towards its target and start to relax. With no targets: relax where things stand.
+
+        ``box`` is a target too: the periodic box goes there by steps of its sides, and the grains with it, affinely.
+        """
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
         self._moved, self._stopped = {}, {}
@@ -113,8 +121,9 @@ class Quasistatic:
             self._moved[name] = moved
             if stopped is not None:
                 self._stopped[name] = stopped
-        self._start = self.packing.state.copy()
+        self._start, self._start_box = self.packing.state.copy(), self.packing.box
         self._freeze_friction()
+        self._squeeze(box)
         self._predict()
         primitives, _ = self.world.primitives()
         settings = self.settings
@@ -122,6 +131,7 @@ class Quasistatic:
             self.packing,
             primitives,
             None if self._frozen is None else self._frozen.terms,
+            self.gravity,
             tolerance=settings.tolerance,
             force_floor=settings.force_floor,
             skin=settings.skin,
@@ -139,6 +149,7 @@ class Quasistatic:
         if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self.packing.state[:] = self._start
+            self.packing.box = self._start_box
             self.world.place(self._placement)
         else:
             self._relaxation.write_back()
@@ -169,6 +180,29 @@ class Quasistatic:
         self._contacts = self.contacts()
         if self.friction is not None:
             self.friction.select(~gone)
+
+    def _squeeze(self, target: PeriodicBox | None) -> None:
+        """Change the periodic box by one step towards ``target``, and the grains' places with it."""
+        old = self.packing.box
+        if target is None or old is None:
+            return
+        step = self.settings.step
+
+        def towards(now: float, then: float) -> float:
+            return now + min(max(then - now, -step), step) if np.isfinite(now) else now
+
+        new = PeriodicBox(
+            towards(old.width, target.width),
+            towards(old.height, target.height),
+            towards(old.shift, target.shift),
+        )
+        if np.isfinite(old.height):
+            share = self.packing.state[1] / old.height
+            self.packing.state[0] += share * (new.shift - old.shift)
+            self.packing.state[1] = share * new.height
+        if np.isfinite(old.width):
+            self.packing.state[0] *= new.width / old.width
+        self.packing.box = new
 
     def _predict(self) -> None:
         """Start from the displacement of the increment before, scaled to the step: saves a tenth to a third of the work.

@@ -52,7 +52,8 @@ class Report:
 class Relaxation:
     """One relaxation of ``packing`` with rigid bodies at rest. Call ``run`` until it no longer answers BUDGET.
 
-    ``packing`` changes only when ``write_back`` is called. ``primitives`` is (M, 8), see ``rigid_contacts``, or None.
+    ``packing`` changes only when ``write_back`` is called. ``primitives`` is (M, 8), see ``rigid_contacts``, or None;
+    ``gravity`` [k/R] times R0² is the weight of a grain.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class Relaxation:
         packing: Packing,
         primitives: NDArray[np.float64] | None = None,
         friction: FrictionTerms | None = None,
+        gravity: tuple[float, float] | None = None,
         *,
         tolerance: float = DEFAULT_TOLERANCE,
         force_floor: float = DEFAULT_FORCE_FLOOR,
@@ -84,6 +86,7 @@ class Relaxation:
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
         self._friction = friction
+        self._gravity = None if gravity is None else (float(gravity[0]), float(gravity[1]))
         self._minimizer = _minimizer(packing, friction is not None)
         stiffest = float(packing.contact_stiffness.max()) if count else 1.0
         if friction is not None:
@@ -113,7 +116,13 @@ class Relaxation:
         left = min(max_iterations, self.max_iterations - self.iterations)
         while self._reason is StopReason.BUDGET and left > 0:
             code, used = fire.run(
-                self._minimizer, self._box, self._rigid, self._friction, self._limits, left
+                self._minimizer,
+                self._box,
+                self._rigid,
+                self._friction,
+                self._gravity,
+                self._limits,
+                left,
             )
             self.iterations += used
             left -= used

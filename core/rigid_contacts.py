@@ -149,7 +149,25 @@ def touch(primitives, m, x, y, s, u, v):
 
 
 @kernel
-def find_rigid_pairs(state, rigid, reach):
+def image(primitives, m, x, y, box):
+    """The periodic image of a grain at (x, y) that is nearest to primitive m (for an edge: to its middle) [R].
+
+    A wall that runs along a periodic direction must reach beyond the cell by a grain's radius at both ends.
+    """
+    if box is None:
+        return x, y
+    x0 = primitives[m, 1]
+    y0 = primitives[m, 2]
+    if primitives[m, 0] == EDGE:
+        x0 = 0.5 * (x0 + primitives[m, 5])
+        y0 = 0.5 * (y0 + primitives[m, 6])
+    rows = np.rint((y - y0) * box[3])
+    x -= rows * box[4]
+    return x - box[0] * np.rint((x - x0) * box[1]), y - rows * box[2]
+
+
+@kernel
+def find_rigid_pairs(state, rigid, reach, box):
     """List the grains that may touch a primitive before they have moved or grown by ``reach`` [R]. Returns False if too many."""
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     x, y, p, q1, q2 = state[0], state[1], state[2], state[3], state[4]
@@ -166,8 +184,9 @@ def find_rigid_pairs(state, rigid, reach):
             length = (primitives[m, 5] - x0) * ux + (primitives[m, 6] - y0) * uy
         for i in range(state.shape[1]):
             extent = p[i] + math.sqrt(q1[i] ** 2 + q2[i] ** 2) + primitives[m, 7] + reach
-            dx = x[i] - x0
-            dy = y[i] - y0
+            dx, dy = image(primitives, m, x[i], y[i], box)
+            dx -= x0
+            dy -= y0
             if kind == EDGE:
                 along = min(max(dx * ux + dy * uy, 0.0), length)
                 dx -= along * ux
@@ -183,7 +202,7 @@ def find_rigid_pairs(state, rigid, reach):
 
 
 @kernel
-def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid):
+def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box):
     """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
     # Every array is fetched once: inside the loop each look into the tuple would cost two atomic reference counts.
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
@@ -193,7 +212,9 @@ def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigi
     energy = 0.0
     for k in range(rigid.used[0]):
         i = grain[k]
-        overlap, nx, ny, h, slope = touch(primitives, primitive[k], x[i], y[i], s[i], u[i], v[i])
+        m = primitive[k]
+        xi, yi = image(primitives, m, x[i], y[i], box)
+        overlap, nx, ny, h, slope = touch(primitives, m, xi, yi, s[i], u[i], v[i])
         if overlap <= 0.0:  # written so that nan passes, and is found
             continue
         f = contact_stiffness[i] * overlap

@@ -16,17 +16,16 @@ from core.relaxation import Relaxation
 
 
 def compile_kernels(
-    box: PeriodicBox | None,
+    *,
+    periodic: bool,
     rigid: bool,
     friction: bool,
+    gravity: bool,
     progress: Callable[[float], None] | None = None,
 ) -> None:
     """Compile for a scene with these terms. ``progress`` is told the share done, from small kernels to the one that holds all."""
-    packing = Packing(
-        [0.0, 1.9, 3.8],
-        [0.0, 0.1, 0.0],
-        box=box and PeriodicBox(40.0, 40.0 if np.isfinite(box.height) else box.height),
-    )
+    box = PeriodicBox(40.0, 40.0) if periodic else None
+    packing = Packing([0.0, 1.9, 3.8], [0.0, 0.1, 0.0], box=box)
     rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
     primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
     terms = None
@@ -38,7 +37,8 @@ def compile_kernels(
         frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
         memory.end(frozen, packing, np.zeros(len(packing)))
         terms = frozen.terms
-    relaxation = Relaxation(packing, primitives, terms, tolerance=0.5, max_iterations=10)
+    weight = (0.0, -1e-3) if gravity else None
+    relaxation = Relaxation(packing, primitives, terms, weight, tolerance=0.5, max_iterations=10)
     m, form, body = relaxation._minimizer, relaxation._box, relaxation._rigid
 
     def forces() -> None:
@@ -60,7 +60,7 @@ def compile_kernels(
         (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
         (0.10, lambda: fire.relist(m, form, body, terms, 0.1)),
         (0.15, forces),
-        (0.15, lambda: fire.evaluate(m, form, body, terms)),
+        (0.15, lambda: fire.evaluate(m, form, body, terms, weight)),
         (0.10, lambda: fire.mean_contact_force(m, form, body)),
         (0.22, lambda: relaxation.run(10)),
         (0.08, lambda: observables.grain_contacts(packing)),

@@ -124,6 +124,11 @@ class Frame:
     curve_force: FloatArray  # (M,) [k R]
     curve_label: str  # e.g. "force on the intruder [k R]"
 
+    stroke_label: str = "stroke [R]"
+
+    # Only in a periodic cell: width and height (inf where open) and the shift of the image above.
+    box: tuple[float, float, float] | None = None  # [R]
+
     # Only with friction: the angle that each grain has turned by, to draw a radius line.
     spin: FloatArray | None = None  # (N,) [rad]
 

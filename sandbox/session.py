@@ -26,6 +26,7 @@ from sandbox.snapshot import View, take
 from scenes import registry
 from scenes.scene import Check, Handle, Scene, Setup, Track, Values
 
+BOX = "box"  # the handle that is no body: the periodic cell
 ARRIVED = 1e-6  # [R] a body this near its target is there
 STUCK = 1e-3  # of a step: a body that moves less than that is stopped
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
@@ -65,9 +66,13 @@ class Session:
         self._progress = progress
         report = progress or _silent
         report(COMPILING, 0.0)
-        frictional = float(self.settings.get("friction", 0.0)) > 0.0
+        terms = self.scene.ingredients(self.settings)
         compile_kernels(
-            None, True, frictional, lambda share: report(COMPILING, COMPILE_SHARE * share)
+            periodic=terms.periodic,
+            rigid=terms.rigid,
+            friction=terms.friction,
+            gravity=terms.gravity,
+            progress=lambda share: report(COMPILING, COMPILE_SHARE * share),
         )
         report(PACKING, COMPILE_SHARE)
         setup = self.scene.build(
@@ -85,7 +90,9 @@ class Session:
         """Start from what was built: relax with all bodies at rest, and record that as increment 0."""
         self._setup = setup
         friction = Friction(setup.friction, len(setup.packing)) if setup.friction > 0.0 else None
-        self._engine = Quasistatic(setup.packing, setup.world, setup.solver, friction)
+        self._engine = Quasistatic(
+            setup.packing, setup.world, setup.solver, friction, setup.gravity
+        )
         self.history = History()
         self._targets: dict[str, Point] = {}
         self._held: set[str] = set()
@@ -212,13 +219,15 @@ class Session:
 
     def advance(self, max_iterations: int = 200) -> bool:
         """One slice of work, at most so many force evaluations. True if it finished an increment. Commands enter in between."""
-        self._require()
         if not self._engine.busy:
             self._take_commands()
+            setup = self._require()
             targets = self._next_targets()
             if not targets:
                 return False
-            self._engine.begin(targets)
+            box = targets.pop(BOX, None)
+            goal = None if box is None or setup.box_target is None else setup.box_target(box)
+            self._engine.begin(targets, goal)
         increment = self._engine.relax(max_iterations)
         if increment is None:
             return False
@@ -247,6 +256,10 @@ class Session:
         """Held bodies that are not yet where the hand wants them, unless something stops them."""
         wanted = {}
         for name, target in self._targets.items():
+            if name == BOX:
+                if not self._box_arrived(target):
+                    wanted[name] = target
+                continue
             body = self._require().world[name]
             way = np.array(target) - body.position
             distance = (
@@ -257,6 +270,15 @@ class Session:
             if distance > ARRIVED and name not in self._blocked:
                 wanted[name] = target
         return wanted
+
+    def _box_arrived(self, target: Point) -> bool:
+        setup = self._require()
+        box = setup.packing.box
+        if box is None or setup.box_target is None or BOX in self._blocked:
+            return True
+        goal = setup.box_target(target)
+        now, then = (np.nan_to_num([b.width, b.height, b.shift], posinf=0.0) for b in (box, goal))
+        return bool(np.max(np.abs(then - now)) <= ARRIVED)
 
     def _after(self, increment: Increment) -> None:
         setup = self._require()
@@ -276,6 +298,7 @@ class Session:
                 self._notices.append(f"{label}: stopped by the wall")
         if increment.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
             self._blocked.update(increment.moved)
+            self._blocked.add(BOX)
             self._script = None
             what = (
                 "a grain was squeezed flat"
@@ -302,6 +325,8 @@ class Session:
 
     def _follow(self, moved: np.ndarray) -> None:
         """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
+        if self._drive.body == BOX:
+            return
         body = self._require().world[self._drive.body]
         if body.axis is not None:
             self._stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
@@ -313,7 +338,13 @@ class Session:
 
     def _record(self, increment: Increment) -> None:
         setup = self._require()
-        fx, fy = (float(v) for v in increment.reactions[setup.world.index(self._drive.body), :2])
+        fx = fy = 0.0
+        if self._drive.body != BOX:
+            fx, fy = map(float, increment.reactions[setup.world.index(self._drive.body), :2])
+        resisting = -(fx * self._direction[0] + fy * self._direction[1]) + 0.0
+        if setup.curve is not None:
+            self._stroke = setup.curve.stroke(setup.packing, increment)
+            resisting = setup.curve.force(setup.packing, increment)
         report = increment.report
         self.history.append(
             Row(
@@ -326,7 +357,7 @@ class Session:
                 residual=report.residual,
                 iterations=report.iterations,
                 stop_reason=str(report.reason),
-                resisting=-float(fx * self._direction[0] + fy * self._direction[1]) + 0.0,
+                resisting=float(resisting),
             )
         )
 

@@ -37,7 +37,7 @@ class View:
 
 def take(view: View) -> Frame:
     """A snapshot of ``view`` that shares nothing with it."""
-    packing = view.setup.packing
+    packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
     under_way = view.engine.progress()
     last = view.last.report
     state = packing.state.copy()
@@ -71,7 +71,11 @@ def take(view: View) -> Frame:
         curve_stroke=view.history.curve[0],
         curve_force=view.history.curve[1],
         spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
-        curve_label=f"force on the {view.drive.label} [k R]",
+        curve_label=f"force on the {view.drive.label} [k R]"
+        if curve is None
+        else curve.force_label,
+        stroke_label="stroke [R]" if curve is None else curve.stroke_label,
+        box=None if box is None else (box.width, box.height, box.shift),
     )
 
 
@@ -94,6 +98,12 @@ def _contact_lines(view: View, packing: Packing) -> Contacts:
 
 
 def _handle_state(view: View, handle: Handle) -> HandleState:
+    box = view.setup.packing.box
+    if handle.body == "box" and box is not None:
+        target = view.targets.get("box")
+        return HandleState(
+            handle.body, handle.label, box.width, box.height, target, 0.0, 0.0, handle.radius
+        )
     body = view.setup.world[handle.body]
     push = view.last.reactions[view.setup.world.index(handle.body)]
     return HandleState(

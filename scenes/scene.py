@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError
 from core.generate import KINDS, Recipe, inside
-from core.packing import Packing
-from core.quasistatic import Settings
+from core.packing import Packing, PeriodicBox
+from core.quasistatic import Increment, Settings
 from core.rigid import Point, RigidWorld
 from scenes.parameter import Parameter, Value
 
@@ -49,6 +49,16 @@ class Outlet:
         return below
 
 
+@dataclass(frozen=True)
+class Curve:
+    """What a scene plots instead of force against stroke, from the packing and the latest increment."""
+
+    stroke_label: str  # with its unit
+    force_label: str  # with its unit
+    stroke: Callable[[Packing, Increment], float]
+    force: Callable[[Packing, Increment], float]
+
+
 @dataclass
 class Setup:
     """A scene that is built: the packing, the bodies, how to relax, and what a person can do with it."""
@@ -60,9 +70,10 @@ class Setup:
     bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
-    friction: float = (
-        0.0  # Coulomb coefficient, between grains and with bodies; 0: the term does not exist
-    )
+    friction: float = 0.0  # Coulomb coefficient, with bodies too; 0: the term does not exist
+    gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
+    box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
+    curve: Curve | None = None  # what is plotted, if not the force on the first handle
 
 
 @dataclass(frozen=True)
@@ -84,6 +95,16 @@ class Check:
     name: str
     holds: bool | None
     measured: str
+
+
+@dataclass(frozen=True)
+class Ingredients:
+    """Which terms a scene has: what is False has no arrays, no compiled code and no cost."""
+
+    rigid: bool = True
+    periodic: bool = False
+    friction: bool = False
+    gravity: bool = False
 
 
 class Scene(ABC):
@@ -116,6 +137,10 @@ class Scene(ABC):
         if packing not in self.packings:
             raise InputError(f"unknown packing {packing!r}: choose {', '.join(self.packings)}")
         return packing
+
+    def ingredients(self, values: Values) -> Ingredients:
+        """The terms that ``values`` call for, so that they can be compiled before anything is built."""
+        return Ingredients(friction=float(values.get("friction", 0.0)) > 0.0)
 
     @abstractmethod
     def build(
