@@ -11,6 +11,8 @@ the centre of pixel ``(row, column)`` being at ``(column + 1/2, row + 1/2)``; th
 x offset, y offset)`` with ``screen x = offset + scale x``, ``screen y = offset - scale y``.
 
 All kernels live in this one file on purpose: the disk cache notices an edited callee only there.
+Those for one small shape keep the interpreter's lock: they take microseconds, and getting the lock
+back from a busy solver can take milliseconds.
 """
 
 from __future__ import annotations
@@ -313,7 +315,7 @@ def draw_lines(
                     _put(pixels, row, column, over, _coverage(distance) * strength)
 
 
-@kernel
+@kernel(nogil=False)
 def draw_ring(
     canvas: Canvas,
     x: float,
@@ -373,7 +375,7 @@ def _hull_distance(
     return inside if inside <= 0.0 else nearest
 
 
-@kernel
+@kernel(nogil=False)
 def draw_hull(
     canvas: Canvas,
     corners: Floats,
@@ -439,6 +441,11 @@ def draw_hull(
                 plain_low = max(plain_low, ax + plain / nx)
             elif plain < 0.0:
                 plain_low = math.inf
+        solid = radius - edge_width - 0.5
+        if count == 1 and solid > abs(row + 0.5 - y_low):
+            half = math.sqrt(solid * solid - (row + 0.5 - y_low) ** 2)
+            plain_low = x_low - half
+            plain_high = x_low + half
         first = _first(low, left, right)
         last = _first(high, first, right)
         plain0 = last

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import os
+import sys
 import time
 from collections.abc import Mapping
 
@@ -20,13 +21,14 @@ from sandbox.draw.warmup import Warmup
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
 from sandbox.views.window_hand import REACH, Mouse
-from sandbox.views.window_keys import PACKING_ACTIONS, Action, action_of
+from sandbox.views.window_keys import Action, action_of, packing_for
 from sandbox.views.window_menu import Choice, Menu
 from sandbox.views.window_run import Run
 from scenes import registry
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
 TOAST = 2.5  # how long the window's own notices stay [s]
+SWITCH = 0.001  # the solver's thread hands over this soon when a picture is due [s]
 SCALES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
 
 
@@ -46,6 +48,7 @@ def run(
     ``scale`` None: by the screen's size. ``log``: where the log of the last scene started is
     written at the end. Raises InputError without a display and for what does not exist.
     """
+    sys.setswitchinterval(SWITCH)
     app = App(Run(packing, seed), size=size, scale=scale, theme=theme)
     try:
         if scene is None:
@@ -285,7 +288,7 @@ class App:
             if self.run.exists:
                 self.show_menu = False
                 self.run.go_on()
-        elif (packing := self._packing_for(action)) is not None:
+        elif (packing := self._packing(action)) is not None:
             self._choose(Choice(packing=packing))
         else:
             self._choose(self.menu.key(action))
@@ -311,21 +314,13 @@ class App:
             self._forget_picture()
             self.run.change_seed()
             self.toast(words.NEW_SEED.format(seed=self.run.seed))
-        elif (packing := self._packing_for(action)) not in (None, self.run.packing):
+        elif (packing := self._packing(action)) not in (None, self.run.packing):
             self._forget_picture()
             self.run.change_packing(str(packing))
             self.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(str(packing), packing)))
 
-    def _packing_for(self, action: Action) -> str | None:
-        """The packing that a key asks for."""
-        packings = self.menu.packings
-        if action in PACKING_ACTIONS:
-            index = PACKING_ACTIONS.index(action)
-            return packings[index] if index < len(packings) else None
-        if action is Action.NEXT_PACKING:
-            here = packings.index(self.run.packing) if self.run.packing in packings else -1
-            return packings[(here + 1) % len(packings)]
-        return None
+    def _packing(self, action: Action) -> str | None:
+        return packing_for(action, self.menu.packings, self.run.packing)
 
     # -- what that leads to --
 

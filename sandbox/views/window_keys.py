@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Sequence
 
 import pygame
 
@@ -80,3 +81,14 @@ def action_of(event: pygame.event.Event) -> Action | None:
         return None
     sign = getattr(event, "unicode", "") or (chr(event.key) if 0 < event.key < 128 else "")
     return _SIGNS.get(sign.lower())
+
+
+def packing_for(action: Action, packings: Sequence[str], current: str) -> str | None:
+    """The packing that an action asks for: by its number, or the next one."""
+    if action in PACKING_ACTIONS:
+        index = PACKING_ACTIONS.index(action)
+        return packings[index] if index < len(packings) else None
+    if action is Action.NEXT_PACKING and packings:
+        here = packings.index(current) if current in packings else -1
+        return packings[(here + 1) % len(packings)]
+    return None
