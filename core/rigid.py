@@ -27,10 +27,9 @@ Point = tuple[float, float]
 Role = Literal["wall", "piston", "intruder", "body"]
 
 SUBSTEPS = 4
-HELD_MASS = (
-    50.0  # [k · increment²]: a pull beyond the hand's limit by 1 k R gives way 0.01 R an increment
-)
-SAME_POINT = 1e-9  # [R] segment ends closer than this are joined
+# [k · increment²]: a push that exceeds the hand's force by 1 k R moves the body back by 0.0075 R an increment.
+HELD_MASS = 50.0
+SAME_POINT = 1e-9  # [R] what is closer than this is at the same place
 
 
 @dataclass
@@ -167,11 +166,13 @@ class RigidWorld:
         """Move a body towards ``target`` [R] by at most ``step`` [R]; ``reaction`` [k R] is the push of the grains on it.
 
         Returns the displacement [R] and, where the hand is stopped by more than distance, why: "force limit", "end of travel" or
-        "wall". Raises InputError for a body that cannot be moved.
+        "wall". Raises InputError for a body that cannot be moved, and for a target that is not finite.
         """
         body = self[name]
         if not body.movable:
             raise InputError(f"{name!r} cannot be moved")
+        if not all(map(math.isfinite, target)):
+            raise InputError(f"{name!r} cannot be moved to {target}: give finite numbers")
         wanted = np.array(target) - body.position
         if body.axis is not None:
             return self._slide(body, float(np.dot(wanted, body.axis)), step, reaction)
@@ -207,7 +208,12 @@ class RigidWorld:
         space.collision_slop = 1e-4
         held = pymunk.Body(HELD_MASS, math.inf)
         held.position, held.angle = body.position, body.angle
-        too_hard = float(np.hypot(*reaction)) > body.force_limit
+        push = float(np.hypot(*reaction))
+        too_hard = push > body.force_limit
+        # What goes beyond the hand's force moves the body back, by less than one step.
+        most = body.force_limit + HELD_MASS * step
+        if push > most:
+            reaction = (reaction[0] * most / push, reaction[1] * most / push)
         held.velocity = (0.0, 0.0) if too_hard else (float(wanted[0]), float(wanted[1]))
         held.velocity_func = lambda b, _gravity, _damping, dt: _limit_speed(b, reaction, dt, step)
         space.add(held, *_shapes(body, held))
@@ -231,15 +237,17 @@ class RigidWorld:
         body.position = (held.position.x, held.position.y)
         stopped = None
         asked = float(np.hypot(*wanted))
-        if asked > 0.0 and float(np.dot(moved, wanted)) < 0.5 * asked**2:
+        if asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2:
             stopped = "force limit" if too_hard else "wall"
         return (float(moved[0]), float(moved[1])), stopped
 
 
 def _limit_speed(body: pymunk.Body, reaction: Point, dt: float, step: float) -> None:
-    """Velocity of a held body: pushed by the grains, and never faster than one step an increment."""
-    velocity = body.velocity + pymunk.Vec2d(*reaction) * (dt / HELD_MASS)
-    body.velocity = velocity if velocity.length <= step else velocity * (step / velocity.length)
+    """Velocity of a held body: never faster than one step an increment, then pushed by the grains, before the hand pulls."""
+    velocity = body.velocity
+    if velocity.length > step:
+        velocity *= step / velocity.length
+    body.velocity = velocity + pymunk.Vec2d(*reaction) * (dt / HELD_MASS)
 
 
 def _shapes(body: RigidBody, holder: pymunk.Body) -> list[pymunk.Shape]:
