@@ -8,7 +8,8 @@ an increment may be cut into any number of calls and takes the same course to th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,8 +76,14 @@ class Quasistatic:
         settings: Settings | None = None,
         friction: Friction | None = None,
         gravity: Point | None = None,
+        follow: Callable[[Packing, RigidWorld], None] | None = None,
+        relaxes: bool = True,
     ) -> None:
-        """``friction``, ``gravity`` [k/R] None: nothing of them is computed. Raises InputError if the step is too long."""
+        """``friction``, ``gravity`` [k/R] None: nothing of them is computed. Raises InputError if the step is too long.
+
+        ``follow`` is called when bodies have moved: it moves what hangs on them. Without ``relaxes`` it alone says where the
+        grains are and what shape they have; forces are then measured, and move nothing.
+        """
         self.packing = packing
         self.world = world
         self.settings = settings or Settings()
@@ -88,6 +95,8 @@ class Quasistatic:
         self.reactions = np.zeros((len(world.bodies), 3))
         self.friction = friction
         self.gravity = gravity
+        self._follow = follow
+        self._relaxes = relaxes
         self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
@@ -122,9 +131,12 @@ class Quasistatic:
             if stopped is not None:
                 self._stopped[name] = stopped
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
+        if self._follow is not None:
+            self._follow(self.packing, self.world)
         self._freeze_friction()
         self._squeeze(box)
-        self._predict()
+        if self._relaxes:
+            self._predict()
         primitives, _ = self.world.primitives()
         settings = self.settings
         self._relaxation = Relaxation(
@@ -142,7 +154,9 @@ class Quasistatic:
         """Go on relaxing for at most ``max_iterations`` force evaluations. The finished increment, or None: call again."""
         if self._relaxation is None:
             raise RuntimeError("no increment is begun")
-        report = self._relaxation.run(max_iterations)
+        report = self._relaxation.run(max_iterations if self._relaxes else 1)
+        if not self._relaxes and report.reason in (StopReason.BUDGET, StopReason.ITERATION_LIMIT):
+            report = replace(report, reason=StopReason.CONVERGED, residual=0.0)
         if report.reason is StopReason.BUDGET:
             return None
         good = report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
@@ -151,7 +165,7 @@ class Quasistatic:
             self.packing.state[:] = self._start
             self.packing.box = self._start_box
             self.world.place(self._placement)
-        else:
+        elif self._relaxes:
             self._relaxation.write_back()
         forces = None
         if good and self.friction is not None and self._frozen is not None:

@@ -74,6 +74,9 @@ class Setup:
     gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
+    follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
+    relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
+    reach: Callable[[str, Point], Point] | None = None  # where a handle can go of what a hand asks
 
 
 @dataclass(frozen=True)
