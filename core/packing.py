@@ -172,6 +172,17 @@ class Packing:
         """Sum of π R0² [R²]; the packing fraction is this over the area open to the grains."""
         return float(np.pi * np.sum(self.rest_radius**2))
 
+    def folded(self) -> tuple[Floats, Floats]:
+        """Centres (x, y) folded into the periodic cell [0, width) × [0, height) [R], each (N,); as they are where it is open."""
+        x, y = self.state[0].copy(), self.state[1].copy()
+        if self.box is not None:
+            width, inverse_width, height, inverse_height, shift = self.box.kernel_form()
+            turns = np.floor(y * inverse_height)
+            x -= turns * shift
+            y -= turns * height
+            x -= width * np.floor(x * inverse_width)
+        return x, y
+
     def set_axes(self, a: ArrayLike, b: ArrayLike, angle: ArrayLike) -> None:
         """Set the shapes from semi-axes [R] and the angle of ``a`` [rad] (the paper's chart)."""
         a, b, angle = (np.asarray(v, dtype=np.float64) for v in (a, b, angle))

@@ -93,7 +93,7 @@ class Frame:
     increment: int  # load increments finished since the start
 
     # Grains. Semi-axes are p + |q| and p - |q|; the long axis is at atan2(q2, q1) / 2.
-    x: FloatArray  # (N,) centre [R]
+    x: FloatArray  # (N,) centre, in a periodic cell folded into it [R]
     y: FloatArray  # (N,) centre [R]
     p: FloatArray  # (N,) mean semi-axis [R]
     q1: FloatArray  # (N,) elongation along x [R]
@@ -128,6 +128,9 @@ class Frame:
 
     # Only in a periodic cell: width and height (inf where open) and the shift of the image above.
     box: tuple[float, float, float] | None = None  # [R]
+
+    # Grains that the scene points at: an arch, an avalanche.
+    highlight: BoolArray | None = None  # (N,)
 
     # Only with friction: the angle that each grain has turned by, to draw a radius line.
     spin: FloatArray | None = None  # (N,) [rad]

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.packing import Packing
 from core.quasistatic import Increment, Quasistatic
@@ -33,6 +34,7 @@ class View:
     grains_out: int
     protocol: bool
     notices: tuple[str, ...]
+    highlight: NDArray[np.bool_] | None = None
 
 
 def take(view: View) -> Frame:
@@ -41,6 +43,7 @@ def take(view: View) -> Frame:
     under_way = view.engine.progress()
     last = view.last.report
     state = packing.state.copy()
+    state[:2] = packing.folded()
     return Frame(
         scene=view.scene.name,
         title=view.scene.title,
@@ -54,7 +57,7 @@ def take(view: View) -> Frame:
         q2=state[4],
         rest_radius=packing.rest_radius.copy(),
         poisson_ratio=packing.poisson_ratio.copy(),
-        contacts=_contact_lines(view, packing),
+        contacts=_contact_lines(view, packing, state[0], state[1]),
         bodies=tuple(_shape(body) for body in view.setup.world.bodies),
         handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
         bounds=view.setup.bounds,
@@ -76,22 +79,28 @@ def take(view: View) -> Frame:
         else curve.force_label,
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
         box=None if box is None else (box.width, box.height, box.shift),
+        highlight=None if view.highlight is None else view.highlight.copy(),
     )
 
 
-def _contact_lines(view: View, packing: Packing) -> Contacts:
+def _contact_lines(
+    view: View, packing: Packing, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> Contacts:
+    """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
     pairs, bodies = view.last.grain_contacts, view.last.body_contacts
     primitives, _ = view.setup.world.primitives()
-    grain_x, grain_y = packing.x[bodies.grain], packing.y[bodies.grain]
+    grain_x, grain_y = x[bodies.grain], y[bodies.grain]
+    body_x = bodies.x + grain_x - packing.x[bodies.grain]
+    body_y = bodies.y + grain_y - packing.y[bodies.grain]
     # On a disc the force acts at its centre; the line ends where grain and disc touch.
     disc = primitives[bodies.primitive, 0] == DISC
-    length = np.hypot(grain_x - bodies.x, grain_y - bodies.y)
+    length = np.hypot(grain_x - body_x, grain_y - body_y)
     share = np.where(disc, primitives[bodies.primitive, 7] / np.maximum(length, 1e-12), 0.0)
     return Contacts(
-        x0=np.concatenate([packing.x[pairs.i], grain_x]),
-        y0=np.concatenate([packing.y[pairs.i], grain_y]),
-        x1=np.concatenate([packing.x[pairs.i] + pairs.dx, bodies.x + share * (grain_x - bodies.x)]),
-        y1=np.concatenate([packing.y[pairs.i] + pairs.dy, bodies.y + share * (grain_y - bodies.y)]),
+        x0=np.concatenate([x[pairs.i], grain_x]),
+        y0=np.concatenate([y[pairs.i], grain_y]),
+        x1=np.concatenate([x[pairs.i] + pairs.dx, body_x + share * (grain_x - body_x)]),
+        y1=np.concatenate([y[pairs.i] + pairs.dy, body_y + share * (grain_y - body_y)]),
         force=np.concatenate([pairs.normal_force, bodies.normal_force]),
         rigid=np.repeat([False, True], [len(pairs.i), len(bodies.grain)]),
     )

@@ -55,7 +55,7 @@ class Curve:
 
     stroke_label: str  # with its unit
     force_label: str  # with its unit
-    stroke: Callable[[Packing, Increment], float]
+    stroke: Callable[[Packing, Increment], float] | None  # None: the number of increments
     force: Callable[[Packing, Increment], float]
 
 
@@ -77,6 +77,26 @@ class Setup:
     follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
     relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
     reach: Callable[[str, Point], Point] | None = None  # where a handle can go of what a hand asks
+    drag: float = 0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
+
+
+@dataclass(frozen=True)
+class Latest:
+    """The newest increment, for what a scene has to say about it."""
+
+    before: Increment | None  # the one before it; None if grains have left since, and numbers differ
+    now: Increment
+    curve: NDArray[np.float64]  # (2, M) what is plotted so far
+    left: int  # grains that left in this increment
+    last_exit: tuple[float, float]  # stroke and force when a grain last left
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What a scene says about an increment, in plain words, and the grains that it points at, (N,) or None."""
+
+    notices: tuple[str, ...] = ()
+    highlight: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -133,7 +153,16 @@ class Scene(ABC):
             values[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
             )
+        self.validate(values)
         return values
+
+    def validate(self, values: Values) -> None:
+        """Quick: raise InputError if the values, each allowed, do not go together. Subclasses add what they know."""
+
+    def steps(self, values: Values) -> int:
+        """Length of the scripted drive in increments."""
+        del values
+        return self.default_steps
 
     def check_packing(self, packing: str) -> str:
         """``packing`` if the scene knows it. Raises InputError otherwise."""
@@ -153,7 +182,12 @@ class Scene(ABC):
 
     @abstractmethod
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
-        """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end."""
+        """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end. {}: wait."""
+
+    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+        """What is to be said about an increment. Nothing, unless a subclass knows better."""
+        del setup, values, latest
+        return Remarks()
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         """Claims that must hold for any run of any scene; subclasses add their own."""
@@ -219,7 +253,7 @@ def _grains_kept(setup: Setup, track: Track) -> Check:
     packing = setup.packing
     out = int(track.grains_out[-1]) if len(track.grains_out) else 0
     counted = len(packing) + out == track.initial_grains
-    astray = ~inside(setup.outline, packing.x, packing.y)
+    astray = ~inside(setup.outline, *packing.folded())
     if setup.outlet is not None:
         lowest = min(y for _, y in setup.outline)
         astray &= packing.y > lowest + 1e-9
