@@ -38,7 +38,7 @@ HINT = "Drag the orange handle · A lets it move by itself · H shows all keys"
 
 SPLASH_TITLE = "Auxetic sandbox"
 SPLASH_STEP = "preparing"
-SPLASH_ABOUT = "The first start compiles the physics and takes longest."
+SPLASH_ABOUT = "Squeezed grains: regular ones bulge, auxetic ones shrink."
 BUILDING = "{text} · {percent:.0f} %"
 
 MENU_TITLE = "Choose a scene"

@@ -165,8 +165,8 @@ class App:
         else:
             self._draw_run(snapshot)
         self.screen.blit(self.renderer.surface, (0, 0))
-        self._rate.drew(time.perf_counter() - begun)
         pygame.display.flip()
+        self._rate.drew(time.perf_counter() - begun)
 
     def _draw_run(self, snapshot: Snapshot) -> None:
         if snapshot.frame is None:

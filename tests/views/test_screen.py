@@ -91,12 +91,17 @@ class Person:
         return pygame.surfarray.array3d(pygame.image.load(path))  # (width, height, 3)
 
     def knob(self) -> tuple[int, int] | None:
-        """The middle of what is orange, on the screen."""
-        orange = np.argwhere((self.screenshot() == channels(HAND)).all(axis=-1))
-        if not len(orange):
+        """The middle of the largest orange thing, on the screen: not the thin arrow."""
+        orange = (self.screenshot() == channels(HAND)).all(axis=-1)
+        sums = np.pad(orange.astype(int).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+        size = 17
+        boxes = (
+            sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
+        )
+        x, y = np.unravel_index(boxes.argmax(), boxes.shape)
+        if boxes.max() < size * size // 4:
             return None
-        x, y = np.median(orange, axis=0)
-        return self.corner[0] + int(x), self.corner[1] + int(y)
+        return self.corner[0] + int(x) + size // 2, self.corner[1] + int(y) + size // 2
 
 
 @pytest.fixture
