@@ -84,6 +84,15 @@ class Minimizer(NamedTuple):
     control: NDArray[np.float64]  # (14,)
 
 
+class Weight(NamedTuple):
+    """Body forces on the grains, in proportion to their rest areas R0²."""
+
+    x: float  # gravity [k/R]
+    y: float
+    drag: float  # [k/R²] against the way from ``start``: how fast grains fall that nothing holds
+    start: NDArray[np.float64]  # (2, N) centres when the relaxation began, in the packing's order [R]
+
+
 class Limits(NamedTuple):
     """Numbers that bound a relaxation."""
 
@@ -199,15 +208,17 @@ def relist(m, box, rigid, friction, skin):
 
 
 @kernel
-def add_weight(x, y, rest_area, fx, fy, gravity):
-    """Weights ``gravity`` · R0² [k R], gravity in [k/R], into fx, fy; returns their potential energy [k R²]."""
+def add_weight(x, y, rest_area, identity, fx, fy, weight):
+    """Weights and drags [k R] into fx, fy; returns their potential energy [k R²]."""
     energy = 0.0
+    gx, gy, drag = weight.x, weight.y, weight.drag
+    start_x, start_y = weight.start[0], weight.start[1]
     for i in range(x.shape[0]):
-        wx = gravity[0] * rest_area[i]
-        wy = gravity[1] * rest_area[i]
-        fx[i] += wx
-        fy[i] += wy
-        energy -= wx * x[i] + wy * y[i]
+        dx = x[i] - start_x[identity[i]]
+        dy = y[i] - start_y[identity[i]]
+        fx[i] += rest_area[i] * (gx - drag * dx)
+        fy[i] += rest_area[i] * (gy - drag * dy)
+        energy += rest_area[i] * (0.5 * drag * (dx * dx + dy * dy) - gx * x[i] - gy * y[i])
     return energy
 
 
@@ -242,7 +253,9 @@ def evaluate(m, box, rigid, friction, gravity):
     if rigid is not None:
         energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid, box)
     if gravity is not None:
-        energy += add_weight(state[0], state[1], m.grains.rest_area, force[0], force[1], gravity)
+        energy += add_weight(
+            state[0], state[1], m.grains.rest_area, m.identity, force[0], force[1], gravity
+        )
     if friction is not None:
         force[5] = 0.0
         energy += add_friction_forces(state, force, friction)

@@ -78,8 +78,11 @@ class Quasistatic:
         gravity: Point | None = None,
         follow: Callable[[Packing, RigidWorld], None] | None = None,
         relaxes: bool = True,
+        drag: float = 0.0,
     ) -> None:
         """``friction``, ``gravity`` [k/R] None: nothing of them is computed. Raises InputError if the step is too long.
+
+        With ``drag`` [k/R²], see ``Relaxation``, an increment is a step of slow motion even where no body moves.
 
         ``follow`` is called when bodies have moved: it moves what hangs on them. Without ``relaxes`` it alone says where the
         grains are and what shape they have; forces are then measured, and move nothing.
@@ -97,6 +100,7 @@ class Quasistatic:
         self.gravity = gravity
         self._follow = follow
         self._relaxes = relaxes
+        self.drag = drag
         self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
@@ -135,7 +139,7 @@ class Quasistatic:
             self._follow(self.packing, self.world)
         self._freeze_friction()
         self._squeeze(box)
-        if self._relaxes:
+        if self._relaxes and self.drag == 0.0:
             self._predict()
         primitives, _ = self.world.primitives()
         settings = self.settings
@@ -144,6 +148,7 @@ class Quasistatic:
             primitives,
             None if self._frozen is None else self._frozen.terms,
             self.gravity,
+            self.drag,
             tolerance=settings.tolerance,
             force_floor=settings.force_floor,
             skin=settings.skin,
@@ -184,6 +189,10 @@ class Quasistatic:
     def progress(self) -> Report | None:
         """How the increment under way stands, or None."""
         return None if self._relaxation is None else self._relaxation.report()
+
+    def farthest_move(self) -> float:
+        """How far any grain has moved in the latest increment [R]."""
+        return float(np.hypot(*self._last[:2]).max(initial=0.0))
 
     def remove(self, gone: NDArray[np.bool_]) -> None:
         """Take the grains marked in ``gone`` (N,) out of the packing."""

@@ -53,7 +53,9 @@ class Relaxation:
     """One relaxation of ``packing`` with rigid bodies at rest. Call ``run`` until it no longer answers BUDGET.
 
     ``packing`` changes only when ``write_back`` is called. ``primitives`` is (M, 8), see ``rigid_contacts``, or None;
-    ``gravity`` [k/R] times R0² is the weight of a grain.
+    ``gravity`` [k/R] times R0² is the weight of a grain. ``drag`` [k/R²] times R0² times the way from where a grain was
+    at the start holds it back: it makes the relaxation one step of overdamped motion (implicit Euler), in which a grain that
+    nothing holds falls by gravity/drag and no further. Where grains are at rest there is no drag.
     """
 
     def __init__(
@@ -62,6 +64,7 @@ class Relaxation:
         primitives: NDArray[np.float64] | None = None,
         friction: FrictionTerms | None = None,
         gravity: tuple[float, float] | None = None,
+        drag: float = 0.0,
         *,
         tolerance: float = DEFAULT_TOLERANCE,
         force_floor: float = DEFAULT_FORCE_FLOOR,
@@ -86,7 +89,13 @@ class Relaxation:
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
         self._friction = friction
-        self._gravity = None if gravity is None else (float(gravity[0]), float(gravity[1]))
+        if not drag >= 0.0:
+            raise InputError("the drag must be 0 or more")
+        self._weight = None
+        if gravity is not None or drag > 0.0:
+            pull = (0.0, 0.0) if gravity is None else gravity
+            start = packing.state[:2].copy()
+            self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
         self._minimizer = _minimizer(packing, friction is not None)
         stiffest = float(packing.contact_stiffness.max()) if count else 1.0
         if friction is not None:
@@ -120,7 +129,7 @@ class Relaxation:
                 self._box,
                 self._rigid,
                 self._friction,
-                self._gravity,
+                self._weight,
                 self._limits,
                 left,
             )

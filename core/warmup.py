@@ -37,9 +37,16 @@ def compile_kernels(
         frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
         memory.end(frozen, packing, np.zeros(len(packing)))
         terms = frozen.terms
-    weight = (0.0, -1e-3) if gravity else None
-    relaxation = Relaxation(packing, primitives, terms, weight, tolerance=0.5, max_iterations=10)
+    relaxation = Relaxation(
+        packing,
+        primitives,
+        terms,
+        (0.0, -1e-3) if gravity else None,
+        tolerance=0.5,
+        max_iterations=10,
+    )
     m, form, body = relaxation._minimizer, relaxation._box, relaxation._rigid
+    weight = relaxation._weight
 
     def forces() -> None:
         rows = m.force
