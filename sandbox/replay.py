@@ -23,7 +23,7 @@ def replay(
     waiting = deque(log.commands)
     while True:
         while waiting and waiting[0][0] == session.finished:
-            session.submit_exactly(waiting.popleft()[1])
+            session.submit(waiting.popleft()[1])
         if session.finished >= log.end:
             session.settle()
             return
