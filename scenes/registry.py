@@ -9,7 +9,7 @@ from typing import TypeVar
 from core.errors import InputError
 from scenes.scene import Scene
 
-_MODULES = ("intruder", "hopper")
+_MODULES = ("single_grain", "intruder", "hopper")
 _SCENES: dict[str, Scene] = {}
 _S = TypeVar("_S", bound=type[Scene])
 
