@@ -148,8 +148,9 @@ class SingleGrain(Scene):
             kind = "auxetic" if packing.auxetic[i] else "regular"
             text = f"{kind}: height {100 * tall:+.1f} %, width {100 * wide:+.1f} %"
             if tall < -NOISE and setup.follow is None:
-                text += f", Poisson's ratio {-wide / tall:.2f}"
-            words.append(text)
+                nu = float(packing.poisson_ratio[i])
+                text += f", Poisson's ratio {-wide / tall:.2f} ({nu:.2f} at small strain)"
+            words.append(text.replace("-", "−"))
         return Remarks(tuple(words) if len(latest.now.body_contacts.grain) else ())
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
