@@ -222,7 +222,7 @@ def _record(options: argparse.Namespace) -> int:
     if output is None:
         raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
     session = _session(options)
-    steps: int = options.steps or session.scene.default_steps
+    steps: int = options.steps or session.scene.steps(session.settings)
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.views.record import record
 

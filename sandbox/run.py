@@ -17,12 +17,12 @@ from core.rigid import Point
 from sandbox.frame import Frame
 from sandbox.history import History, Row
 from sandbox.snapshot import View, take
-from scenes.scene import Check, Handle, Scene, Setup, Track, Values
+from scenes.scene import Check, Handle, Latest, Remarks, Scene, Setup, Track, Values
 
 BOX = "box"  # the handle that is no body: the periodic cell
 ARRIVED = 1e-6  # [R] a body this near its target is there
 STUCK = 1e-3  # of a step: a body that moves less than that is stopped
-DIAMETER = 2.0  # of a large grain [R]
+AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
 class Run:
@@ -41,6 +41,7 @@ class Run:
             friction,
             setup.gravity,
             follow=setup.follow,
+            drag=setup.drag,
             relaxes=setup.relaxes,
         )
         self.history = History()
@@ -59,7 +60,9 @@ class Run:
         while last is None:
             last = self.engine.relax(1_000)
         self._last = last
+        self._moving = setup.drag > 0.0  # the grains go on by themselves
         self._record(last)
+        self._remarks = self._remark(None, 0)
 
     # What a hand does.
 
@@ -103,26 +106,47 @@ class Run:
     @property
     def idle(self) -> bool:
         """True if no body has to move and nothing is being relaxed."""
-        return not self.engine.busy and self._script is None and not self._wanted()
+        return self._still and not self.engine.busy and not self._wanted()
 
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
             targets = self._next_targets()
-            if not targets:
+            if not targets and self._still:
                 return False
             box = targets.pop(BOX, None)
             self.engine.begin(targets, None if box is None else self._cell(box))
         increment = self.engine.relax(max_iterations)
         if increment is None:
             return False
-        self._last = increment
+        before, self._last = self._last, increment
         self._tell_what_stopped(increment)
-        self._remove_those_gone()
+        left = self._remove_those_gone()
         self._follow(np.array(increment.moved.get(self._drive.body, (0.0, 0.0))))
         self._record(increment)
-        self._watch_for_clog()
+        if left:
+            self._last_exit = self.history[-1].stroke, self.history[-1].resisting
+        self._moving = self._goes_on(left)
+        self._remarks = self._remark(None if left else before, left)
         return True
+
+    @property
+    def _still(self) -> bool:
+        """True if neither the script nor the grains by themselves want another increment."""
+        return self._script is None and not self._moving
+
+    def _goes_on(self, left: int) -> bool:
+        """With drag: whether the grains are still on their way."""
+        gravity, drag = self.setup.gravity, self.setup.drag
+        failed = self._last.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
+        if gravity is None or drag == 0.0 or failed:
+            return False
+        return left > 0 or self.engine.farthest_move() > AT_REST * math.hypot(*gravity) / drag
+
+    def _remark(self, before: Increment | None, left: int) -> Remarks:
+        """What the scene has to say about the newest increment."""
+        latest = Latest(before, self._last, self.history.curve, left, self._last_exit)
+        return self.scene.remarks(self.setup, self.values, latest)
 
     def _next_targets(self) -> dict[str, Point]:
         if self._script is not None:
@@ -180,9 +204,10 @@ class Run:
             what = "a grain was squeezed flat" if flat else "the numbers blew up"
             self.notices.append(f"{what}: back to the state before this step. Draw back, or reset")
 
-    def _remove_those_gone(self) -> None:
+    def _remove_those_gone(self) -> int:
+        """How many grains have left by the outlet in this increment."""
         if self.setup.outlet is None:
-            return
+            return 0
         gone = self.setup.outlet.gone(self.engine.packing)
         if gone.any():
             self._out += int(gone.sum())
@@ -190,6 +215,7 @@ class Run:
             self.setup.packing = self.engine.packing
             pairs, bodies = self.engine.contacts()
             self._last = replace(self._last, grain_contacts=pairs, body_contacts=bodies)
+        return int(gone.sum())
 
     def _follow(self, moved: np.ndarray) -> None:
         """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
@@ -212,7 +238,8 @@ class Run:
         resisting = -(fx * self._direction[0] + fy * self._direction[1]) + 0.0
         curve = self.setup.curve
         if curve is not None:
-            self._stroke = curve.stroke(self.setup.packing, increment)
+            at = curve.stroke
+            self._stroke = len(self.history) if at is None else at(self.setup.packing, increment)
             resisting = curve.force(self.setup.packing, increment)
         report = increment.report
         self.history.append(
@@ -229,19 +256,6 @@ class Run:
                 resisting=float(resisting),
             )
         )
-
-    def _watch_for_clog(self) -> None:
-        """Clogged: the force rises over a stroke of one grain diameter while nothing leaves."""
-        if self.setup.outlet is None:
-            return
-        now, before = self.history[-1], self.history[-2]
-        if now.grains_out > before.grains_out:
-            self._last_exit = now.stroke, now.resisting
-        stroke = now.stroke - self._last_exit[0]
-        if stroke >= DIAMETER and now.resisting > max(self._last_exit[1], 0.0):
-            self.notices.append(
-                f"clogged: {stroke / DIAMETER:.1f} diameters of stroke, nothing left"
-            )
 
     # What can be seen.
 
@@ -261,7 +275,8 @@ class Run:
                 stroke=self._stroke,
                 grains_out=self._out,
                 protocol=self._script is not None,
-                notices=tuple(self.notices),
+                notices=(*self.notices, *self._remarks.notices),
+                highlight=self._remarks.highlight,
             )
         )
 

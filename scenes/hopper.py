@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from core.arches import arch
 from core.errors import InputError
 from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
@@ -14,8 +17,10 @@ from scenes.scene import (
     MATERIAL,
     SOLVER,
     Handle,
+    Latest,
     Outlet,
     Progress,
+    Remarks,
     Scene,
     Setup,
     Values,
@@ -27,6 +32,8 @@ WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]
 PISTON = 1.6  # thickness of the piston [R]
 LEFT_BEHIND = 0.8  # a grain whose centre is this far below the lips has left [R]
 LIFT = 3.0  # how far the piston may be drawn back [R]
+LEAST_CHANNEL = 4.0  # height of the filled channel above the funnel [R]
+DIAMETER = 2.0  # of a large grain [R]
 
 
 @register
@@ -66,30 +73,28 @@ class Hopper(Scene):
         *SOLVER,
     )
 
+    def validate(self, values: Values) -> None:
+        shape = Shape(values)
+        if shape.lip_x > shape.half_width - 0.5:
+            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
+        if shape.channel < LEAST_CHANNEL:
+            raise InputError(
+                "too few grains to fill the funnel: raise grains, or lower width or angle"
+            )
+
+    def steps(self, values: Values) -> int:
+        end = min(float(values["stroke"]), Shape(values).channel - 1.0)
+        return max(1, math.floor(end / float(values["step"]) + 1e-6))
+
     def build(
         self, values: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         grains = recipe(values, packing)
-        fraction = float(values["packing_fraction"])
-        half_width = 0.5 * float(values["width"])
-        opening = 2.0 * float(values["orifice"])
-        angle = math.radians(float(values["angle"]))
-        # The lips are round, with their centres at y = 0; the orifice is the clear gap between them.
-        lip = Lip(0.5 * opening, angle)
-        if lip.x > half_width - 0.5:
-            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
-        neck = lip.y + (half_width - lip.x) * math.tan(angle)
-        funnel = (half_width + lip.x) * (neck - lip.y)
-        channel = (float(values["grains"]) * grains.mean_area() / fraction - funnel) / (
-            2.0 * half_width
-        )
-        if channel < 4.0:
-            raise InputError(
-                "too few grains to fill the funnel: raise grains, or lower width or angle"
-            )
+        shape = Shape(values)
+        half_width, neck, channel = shape.half_width, shape.neck, shape.channel
         top = neck + channel
         brim = top + LIFT + PISTON
-        right: list[Point] = [(lip.x, lip.y), (half_width, neck), (half_width, brim)]
+        right: list[Point] = [(shape.lip_x, shape.lip_y), (half_width, neck), (half_width, brim)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
         outline: list[Point] = [
             right[0],
@@ -122,7 +127,7 @@ class Hopper(Scene):
                 wall("right wall", right, WALL),
                 wall("left wall", left, WALL),
                 piston,
-                wall("gate", [(-lip.x, lip.y), (lip.x, lip.y)], WALL),
+                wall("gate", [(-shape.lip_x, shape.lip_y), (shape.lip_x, shape.lip_y)], WALL),
             ]
         )
         packed = pack(
@@ -130,7 +135,7 @@ class Hopper(Scene):
             seed=seed,
             outline=outline,
             world=world,
-            packing_fraction=fraction,
+            packing_fraction=shape.fraction,
             progress=progress,
         )
         world.remove("gate")
@@ -141,7 +146,7 @@ class Hopper(Scene):
             handles=(Handle("piston", "piston", (0.0, -1.0), half_width),),
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
-            outlet=Outlet(-LEFT_BEHIND, opening),
+            outlet=Outlet(-LEFT_BEHIND, shape.opening),
             friction=float(values["friction"]),
         )
 
@@ -153,10 +158,48 @@ class Hopper(Scene):
             return None
         return {"piston": (piston.home[0], piston.home[1] - depth)}
 
+    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+        """Clogged: the force has risen over a stroke of one grain diameter while nothing left."""
+        del values
+        stroke, force = latest.curve[:, -1]
+        since = float(stroke) - latest.last_exit[0]
+        if since < DIAMETER or force <= max(latest.last_exit[1], 0.0):
+            return Remarks()
+        found = arch_between(setup, latest, "left wall", "right wall")
+        grains = "" if found is None else f", held by an arch of {int(found.sum())} grains"
+        return Remarks(
+            (f"clogged: {since / DIAMETER:.1f} diameters of stroke, nothing left{grains}",), found
+        )
 
-class Lip:
-    """Where the face of the funnel begins, so that the clear gap between the round lips is exactly the orifice."""
 
-    def __init__(self, half_opening: float, angle: float) -> None:
-        self.x = half_opening + 0.5 * WALL * (1.0 - math.sin(angle))
-        self.y = 0.5 * WALL * math.cos(angle)
+class Shape:
+    """The hopper in numbers [R]. The lips are round, with their centres at y = 0; the orifice is the clear gap between them."""
+
+    def __init__(self, values: Values) -> None:
+        angle = math.radians(float(values["angle"]))
+        self.fraction = float(values["packing_fraction"])
+        self.half_width = 0.5 * float(values["width"])
+        self.opening = DIAMETER * float(values["orifice"])
+        # Where the face of the funnel begins, so that the clear gap between the round lips is exactly the orifice.
+        self.lip_x = 0.5 * self.opening + 0.5 * WALL * (1.0 - math.sin(angle))
+        self.lip_y = 0.5 * WALL * math.cos(angle)
+        self.neck = self.lip_y + (self.half_width - self.lip_x) * math.tan(angle)
+        funnel = (self.half_width + self.lip_x) * (self.neck - self.lip_y)
+        grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
+        self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
+
+
+def arch_between(setup: Setup, latest: Latest, left: str, right: str) -> np.ndarray | None:
+    """The grains (N,) of the arch between two walls, or None."""
+    bodies = latest.now.body_contacts
+    _, owner = setup.world.primitives()
+    body = owner[bodies.primitive]
+    side = np.where(body == setup.world.index(left), -1, 0)
+    side[body == setup.world.index(right)] = 1
+    base = min(y for _, y in setup.outline)
+    chain = arch(setup.packing, latest.now.grain_contacts, bodies, side, base)
+    if not len(chain):
+        return None
+    highlight = np.zeros(len(setup.packing), dtype=bool)
+    highlight[chain] = True
+    return highlight

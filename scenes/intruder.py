@@ -56,19 +56,35 @@ class Intruder(Scene):
         *SOLVER,
     )
 
-    def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
-    ) -> Setup:
-        grains = recipe(values, packing)
+    def validate(self, values: Values) -> None:
+        self._box(values)
+
+    def steps(self, values: Values) -> int:
         radius = float(values["intruder_radius"])
-        fraction = float(values["packing_fraction"])
-        area = float(values["grains"]) * grains.mean_area() / fraction + math.pi * radius**2
+        room = self._box(values)[0] - 2.0 * (radius + MARGIN)
+        return max(1, math.floor(min(float(values["stroke"]), room) / float(values["step"]) + 1e-6))
+
+    @staticmethod
+    def _box(values: Values) -> tuple[float, float]:
+        """Width and height of the box [R]. Raises InputError if the intruder does not fit."""
+        radius = float(values["intruder_radius"])
+        grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
+        area = grains / float(values["packing_fraction"]) + math.pi * radius**2
         height = math.sqrt(area / ASPECT)
         width = area / height
         if 2.0 * radius + 2.0 * MARGIN > min(width, height):
             raise InputError(
                 "the intruder does not fit into the box: raise grains or lower intruder_radius"
             )
+        return width, height
+
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
+        grains = recipe(values, packing)
+        radius = float(values["intruder_radius"])
+        fraction = float(values["packing_fraction"])
+        width, height = self._box(values)
         outline: list[Point] = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
         world = RigidWorld(
             [

@@ -77,14 +77,18 @@ class Setup:
     follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
     relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
     reach: Callable[[str, Point], Point] | None = None  # where a handle can go of what a hand asks
-    drag: float = 0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
+    drag: float = (
+        0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
+    )
 
 
 @dataclass(frozen=True)
 class Latest:
     """The newest increment, for what a scene has to say about it."""
 
-    before: Increment | None  # the one before it; None if grains have left since, and numbers differ
+    before: (
+        Increment | None
+    )  # the one before it; None if grains have left since, and numbers differ
     now: Increment
     curve: NDArray[np.float64]  # (2, M) what is plotted so far
     left: int  # grains that left in this increment
@@ -158,6 +162,7 @@ class Scene(ABC):
 
     def validate(self, values: Values) -> None:
         """Quick: raise InputError if the values, each allowed, do not go together. Subclasses add what they know."""
+        del values
 
     def steps(self, values: Values) -> int:
         """Length of the scripted drive in increments."""

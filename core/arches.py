@@ -1,0 +1,92 @@
+"""The arch that holds back everything above an orifice.
+
+An arch is a chain of grains, each touching the next, whose ends rest on the two sides of the orifice (To, Lai and Pak,
+doi:10.1103/PhysRevLett.86.71). Many chains span a clogged orifice; the one that carries is taken to be the lowest: that which
+encloses the least area over the line through the lips.
+"""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.observables import GrainContacts, RigidContacts
+from core.packing import Packing
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+WEAK = 0.1  # of the mean contact force: contacts below it hold nothing
+LENGTH_COST = (
+    0.05  # [R] a chain also pays for its length, so that none climbs up and down for nothing
+)
+
+
+def arch(
+    packing: Packing,
+    pairs: GrainContacts,
+    bodies: RigidContacts,
+    side: Indices,
+    base: float,
+) -> Indices:
+    """Grains of the arch from its left end to its right end, (M,); empty if none spans the orifice.
+
+    ``side`` (K,) says for each contact of ``bodies`` where it supports: −1 left of the orifice, +1 right of it, 0 neither.
+    ``base`` [R] is the height of the lips. Of all chains of contacts that carry force the one is taken whose
+    Σ |Δx| (height over the base) is least.
+    """
+    forces = np.concatenate([pairs.normal_force, bodies.normal_force])
+    if not len(forces):
+        return np.zeros(0, dtype=np.int64)
+    weak = WEAK * float(forces.mean())
+    x, y = packing.x, packing.y
+    links: dict[int, list[tuple[int, float]]] = {}
+    for k in np.flatnonzero(pairs.normal_force > weak):
+        i, j = int(pairs.i[k]), int(pairs.j[k])
+        cost = _cost(x[i], y[i], x[j], y[j], base)
+        links.setdefault(i, []).append((j, cost))
+        links.setdefault(j, []).append((i, cost))
+    start: dict[int, float] = {}
+    end: dict[int, float] = {}
+    for k in np.flatnonzero((side != 0) & (bodies.normal_force > weak)):
+        i = int(bodies.grain[k])
+        cost = _cost(x[i], y[i], bodies.x[k], bodies.y[k], base)
+        ends = start if side[k] < 0 else end
+        ends[i] = min(cost, ends.get(i, np.inf))
+    return np.array(_cheapest_chain(links, start, end), dtype=np.int64)
+
+
+def _cost(x0: float, y0: float, x1: float, y1: float, base: float) -> float:
+    """Area between a link and the base [R²], and a little for its length."""
+    height = max(0.5 * (y0 + y1) - base, 0.0)
+    return abs(x1 - x0) * height + LENGTH_COST * float(np.hypot(x1 - x0, y1 - y0))
+
+
+def _cheapest_chain(
+    links: dict[int, list[tuple[int, float]]], start: dict[int, float], end: dict[int, float]
+) -> list[int]:
+    """Dijkstra's algorithm from any of ``start`` to any of ``end``, each with the price of beginning or ending there."""
+    best = dict(start)
+    came: dict[int, int] = {}
+    queue = [(cost, grain) for grain, cost in start.items()]
+    heapq.heapify(queue)
+    done: set[int] = set()
+    while queue:
+        cost, grain = heapq.heappop(queue)
+        if grain in done:
+            continue
+        done.add(grain)
+        for other, link in links.get(grain, ()):
+            if cost + link < best.get(other, np.inf):
+                best[other] = cost + link
+                came[other] = grain
+                heapq.heappush(queue, (cost + link, other))
+    reached = [(best[grain] + cost, grain) for grain, cost in end.items() if grain in best]
+    if not reached:
+        return []
+    chain = [min(reached)[1]]
+    while chain[-1] in came:
+        chain.append(came[chain[-1]])
+    return chain[::-1]
