@@ -162,6 +162,22 @@ def rigid_contact(stiffness: float, grain: Ellipse, row: Floats) -> Contact | No
     return Contact(overlap, f, n, (f * n[0], f * n[1]), mine, _touching_point(grain, n, mine))
 
 
+def beside(grain: Ellipse, row: Floats, box: PeriodicBox | None) -> Ellipse:
+    """The periodic image of a grain that is nearest to a primitive, for an edge to its middle: first in y, then in x."""
+    if box is None:
+        return grain
+    x, y = float(row[1]), float(row[2])
+    if row[0] == EDGE:
+        x, y = 0.5 * (x + float(row[5])), 0.5 * (y + float(row[6]))
+    dx, dy = grain.x - x, grain.y - y
+    if math.isfinite(box.height):
+        up = round(dy / box.height)
+        dx, dy = dx - up * box.shift, dy - up * box.height
+    if math.isfinite(box.width):
+        dx -= round(dx / box.width) * box.width
+    return grain._replace(x=x + dx, y=y + dy)
+
+
 def _along_and_across(f: float, n: Vector, across: float) -> Vector:
     """f n + across t, with t = n turned by a right angle counter-clockwise."""
     return f * n[0] - across * n[1], f * n[1] + across * n[0]
@@ -224,7 +240,8 @@ def _contacts(
                 yield me, 0.5, contact
     for row in () if primitives is None else primitives:
         for i, grain in enumerate(grains):
-            contact = rigid_contact(float(packing.contact_stiffness[i]), grain, row)
+            image = beside(grain, row, packing.box)
+            contact = rigid_contact(float(packing.contact_stiffness[i]), image, row)
             if contact is not None:
                 yield i, 1.0, contact
 
@@ -268,7 +285,8 @@ def reactions(packing: Packing, primitives: Floats) -> Floats:
     total = np.zeros((len(primitives), 3))
     for m, row in enumerate(primitives):
         for i, grain in enumerate(ellipses(packing)):
-            contact = rigid_contact(float(packing.contact_stiffness[i]), grain, row)
+            image = beside(grain, row, packing.box)
+            contact = rigid_contact(float(packing.contact_stiffness[i]), image, row)
             if contact is not None:
                 (fx, fy), (x, y) = contact.force, contact.point
                 total[m] -= fx, fy, x * fy - y * fx

@@ -39,9 +39,18 @@ def test_grains_among_bodies(seed: int) -> None:
     assert_twins(packing, examples.bodies().primitives()[0])
 
 
-def test_grains_among_bodies_in_a_box() -> None:
-    packing = examples.random_grains(20, 9.0, 1, examples.BOXES["sheared"])
-    assert_twins(packing, examples.bodies().primitives()[0])
+@pytest.mark.parametrize("box", examples.BOXES.values(), ids=examples.BOXES.keys())
+def test_grains_among_bodies_in_a_box(box: PeriodicBox | None) -> None:
+    """Grains anywhere, many of them in other cells than the bodies."""
+    packing = examples.random_grains(100, 20.0, 1, box)
+    world = examples.bodies()
+    world.remove("floor")
+    primitives, _ = world.primitives()
+    assert_twins(packing, primitives)
+    touching = observables.body_contacts(packing, primitives)
+    assert len(touching.grain) > 3
+    if box is not None:
+        assert np.any(np.hypot(packing.x - 4.0, packing.y - 4.0)[touching.grain] > 8.0)
 
 
 def test_the_examples_touch_every_kind_of_primitive() -> None:
