@@ -35,6 +35,11 @@ class Warmup:
         """Begin."""
         self._thread.start()
 
+    def join(self, timeout: float) -> bool:
+        """Wait for the end [s]; True when it has come."""
+        self._thread.join(timeout)
+        return not self._thread.is_alive()
+
     def _run(self) -> None:
         try:
             compile_kernels()

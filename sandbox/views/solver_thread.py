@@ -81,6 +81,7 @@ class SolverThread:
         self._changed = threading.Condition()
         self._snapshot = Snapshot("building")
         self._pictured = 0.0
+        self._patience = 0.0  # with the increment at work when it is time to end [s]
         # A daemon, because a compilation cannot be broken off: the process may end without it.
         self._thread = threading.Thread(target=self._run, name="solver", daemon=True)
 
@@ -132,6 +133,7 @@ class SolverThread:
         """End the thread; True when it has ended, after which its session may be used."""
         with self._changed:
             self._stop = True
+            self._patience = 0.8 * timeout
             self._changed.notify()
         if self._thread.is_alive():
             self._thread.join(timeout)
@@ -182,9 +184,9 @@ class SolverThread:
             return not self._stop
 
     def _finish(self) -> None:
-        """Bring the increment at work to its end if that is soon: a log ends between increments."""
-        patience = time.perf_counter() + 2.0
-        while self._session.busy and time.perf_counter() < patience:
+        """Bring the increment at work to its end: a log ends between increments."""
+        end = time.perf_counter() + self._patience
+        while self._session.busy and time.perf_counter() < end:
             self._session.advance(SLICE)
 
     def _due(self) -> bool:

@@ -28,6 +28,7 @@ from scenes import registry
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
 TOAST = 2.5  # how long the window's own notices stay [s]
+PATIENCE = 2.0  # with a thread that is to end [s]
 SWITCH = 0.001  # the solver's thread hands over this soon when a picture is due [s]
 SCALES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
 
@@ -60,7 +61,13 @@ def run(
     except KeyboardInterrupt:
         pass
     finally:
-        app.close(log)
+        ended = app.close(log)
+    if not ended:
+        # A thread is still compiling. That cannot be broken off, and when the interpreter ends
+        # under it, LLVM aborts: leave at once. Nothing was built, so there is nothing to save.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
     return 0
 
 
@@ -108,12 +115,13 @@ class App:
         self.show_menu = self.show_help = False
         self._dirty = True
 
-    def close(self, log: str | os.PathLike[str] | None = None) -> None:
-        """End the solver, write the log, close the window."""
+    def close(self, log: str | os.PathLike[str] | None = None) -> bool:
+        """Close the window, end the threads, write the log; False if one is still compiling."""
         self.running = False
         self.mouse.release(self.send)
         pygame.display.quit()
-        self.run.close(log)
+        ended = self.run.close(log)
+        return self._warmup.join(PATIENCE) and ended
 
     def send(self, command: Command) -> None:
         """A command to the solver."""

@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 
+from core.errors import InputError
 from sandbox.commands import Change, Command, Protocol, Reset
 from sandbox.session import Session
 from sandbox.views.solver_thread import Snapshot, SolverThread
 
 Settings = Mapping[str, object]
+
+PATIENCE = 2.0  # with a thread that is to end [s]
+LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
 
 
 class Run:
@@ -23,6 +27,7 @@ class Run:
         self._settings: Settings | None = None
         self._session: Session | None = None
         self._solver: SolverThread | None = None
+        self._leaving: list[SolverThread] = []
         self._paused_by_menu = False
 
     @property
@@ -43,8 +48,8 @@ class Run:
     def start(self, scene: str, settings: Settings | None = None) -> None:
         """Leave what runs and build a scene. Raises InputError for one that does not exist."""
         session = self._make(scene, self.packing, self.seed, dict(settings or {}))
-        if self._solver is not None:
-            self._solver.stop(0.2)  # if it is compiling it ends by itself, later
+        if self._solver is not None and not self._solver.stop(0.2):
+            self._leaving.append(self._solver)  # it is compiling, and ends by itself later
         self.scene, self._settings, self._session = scene, settings, session
         self._paused_by_menu = False
         self._solver = SolverThread(session)
@@ -101,9 +106,16 @@ class Run:
             self._solver.pause(False)
         self._paused_by_menu = False
 
-    def close(self, log: str | os.PathLike[str] | None) -> None:
-        """End the thread; write the session's log if one is wanted."""
-        ended = self._solver is None or self._solver.stop()
-        built = self.snapshot.frame is not None
-        if log is not None and self._session is not None and ended and built:
-            self._session.write_log(os.fspath(log))
+    def close(self, log: str | os.PathLike[str] | None) -> bool:
+        """End the threads and write the session's log if one is wanted.
+
+        False if a thread is still compiling. Raises InputError if the log cannot be written.
+        """
+        wanted = log is not None and self.snapshot.frame is not None
+        ended = self._solver is None or self._solver.stop(LONG if wanted else PATIENCE)
+        if log is not None and wanted and ended and self._session is not None:
+            try:
+                self._session.write_log(os.fspath(log))
+            except OSError as error:
+                raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
+        return all(solver.stop(PATIENCE) for solver in self._leaving) and ended

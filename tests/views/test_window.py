@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -230,13 +232,16 @@ def test_menu_by_mouse_and_back(running: Desk) -> None:
     assert running.page() == "run"
     assert not running.paused()
     running.key(pygame.K_ESCAPE)
-    place = running.app.menu.place_of("hopper")
+    for _ in running.app.menu.entries:
+        running.key(pygame.K_UP)
+    first = running.app.menu.entries[0].name
+    place = running.app.menu.place_of(first)
     assert place is not None
     running.point(place.center)
     assert running.app.menu.cursor() == pygame.SYSTEM_CURSOR_HAND
     running.press(place.center)
     running.until(lambda: running.app.run.snapshot.phase == "running")
-    assert [session.scene for session in running.sessions] == ["intruder", "hopper"]
+    assert [session.scene for session in running.sessions] == ["intruder", first]
 
 
 def test_packing_looked_at_in_the_menu_only_is_forgotten(running: Desk) -> None:
@@ -377,3 +382,43 @@ def test_rate_says_what_holds_it_up() -> None:
         rate.drew(0.05)
     rate.renew(3.0, 20.0)
     assert "drawing takes 50 ms" in rate.text
+
+
+def test_log_that_cannot_be_written_is_an_input_error(tmp_path: Path) -> None:
+    desk = Desk()
+    desk.start()
+
+    def full(path: str) -> None:
+        raise OSError(28, "No space left on device")
+
+    desk.session.write_log = full  # type: ignore[method-assign]
+    with pytest.raises(InputError, match="No space left"):
+        desk.app.close(tmp_path / "run.jsonl")
+
+
+@pytest.mark.end_to_end
+def test_quitting_while_compiling_is_no_crash(tmp_path: Path) -> None:
+    # LLVM aborts when the interpreter ends under a thread that compiles.
+    program = (
+        "import threading, time, pygame\n"
+        "from sandbox.views import window\n"
+        "def quit():\n"
+        "    time.sleep(1.5)\n"
+        "    pygame.event.post(pygame.event.Event(pygame.QUIT))\n"
+        "threading.Thread(target=quit, daemon=True).start()\n"
+        "raise SystemExit(window.run('intruder'))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={
+            **os.environ,
+            "NUMBA_CACHE_DIR": str(tmp_path),
+            "PYTHONPATH": str(Path(__file__).parents[2]),
+        },
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
