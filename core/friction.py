@@ -248,7 +248,10 @@ class Friction:
         support = observables.support_coefficients(packing)
         r = np.hypot(pairs.dx, pairs.dy)
         nx, ny = pairs.dx / r, pairs.dy / r
-        arm_i, arm_j = _arm(support, pairs.i, nx, ny), _arm(support, pairs.j, nx, ny)
+        # Both arms reach to one point, half way between the outlines: then h_i + h_j is the distance of the centres, the
+        # forces exert no torque on the pair, and a pair that turns as one rigid whole does not slip.
+        arm_i = _arm(support, pairs.i, nx, ny) - 0.5 * pairs.overlap
+        arm_j = r - arm_i
         stiffness = TANGENTIAL_STIFFNESS * pairs.normal_force / pairs.overlap
         # Between grains. All tangents are n turned counter-clockwise, n from i to j, or from the grain to the body.
         offset = ny * (packing.x[pairs.i] - packing.x[pairs.j]) - nx * (
