@@ -78,7 +78,8 @@ class Run:
         self._handle(handle)
         if handle in self._held:
             reach = self.setup.reach
-            self._targets[handle] = target if reach is None else reach(handle, target)
+            there = target if reach is None else reach(self.setup.packing, handle, target)
+            self._targets[handle] = there
             self._blocked.discard(handle)
             self.notices = []
 

@@ -76,7 +76,7 @@ class Setup:
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
     follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
     relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
-    reach: Callable[[str, Point], Point] | None = None  # where a handle can go of what a hand asks
+    reach: Callable[[Packing, str, Point], Point] | None = None  # where a handle can go, of a wish
     drag: float = (
         0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
     )
