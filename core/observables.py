@@ -250,12 +250,9 @@ def packing_fraction(packing: Packing, area: float) -> float:
 
 def force_drops(force: Floats) -> Floats:
     """Sizes of the falls of a force–displacement curve (n,) [k R]: each unbroken run of decreasing force is one drop."""
-    change = np.diff(np.asarray(force, dtype=np.float64))
-    falling = change < 0.0
+    curve = np.asarray(force, dtype=np.float64)
+    falling = np.diff(curve) < 0.0
     if not falling.any():
         return np.zeros(0)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], falling, [False]]).astype(np.int8)))
-    starts, ends = edges[::2], edges[1::2]
-    total = np.concatenate([[0.0], np.cumsum(change)])
-    drops: Floats = total[starts] - total[ends]
-    return drops
+    return curve[edges[::2]] - curve[edges[1::2]]

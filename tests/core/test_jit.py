@@ -1,0 +1,101 @@
+"""Kernels: from the cache as when just compiled, and never from the cache of other sources."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core import jit
+
+REPOSITORY = Path(__file__).parents[2]
+PROGRAM = """
+from tests.core import examples
+from core.relaxation import Relaxation
+packing = examples.random_grains(30, 9.0, 5)
+relaxation = Relaxation(packing, tolerance=1e-6)
+report = relaxation.run(2000)
+relaxation.write_back()
+print(packing.hash(), report)
+"""
+
+
+def run_alone(cache: Path) -> tuple[str, float]:
+    start = time.perf_counter()
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        cwd=REPOSITORY,
+        env={**os.environ, "NUMBA_CACHE_DIR": str(cache), "PYTHONPATH": str(REPOSITORY)},
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    return done.stdout, time.perf_counter() - start
+
+
+@pytest.mark.slow
+def test_cached_kernels_give_the_same_bits(tmp_path: Path) -> None:
+    """Compiled in one process, loaded from the disk in the next."""
+    compiled, first = run_alone(tmp_path)
+    files = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")}
+    loaded, second = run_alone(tmp_path)
+    assert len(files) > 5
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")} == files
+    assert loaded == compiled
+    assert second < first
+
+
+def test_other_sources_get_another_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The name of the cache folder follows every source file beside it, and the compiler's version."""
+    (tmp_path / "jit.py").write_text("")
+    (tmp_path / "kernels.py").write_text("a = 1")
+    monkeypatch.setattr(jit, "__file__", str(tmp_path / "jit.py"))
+    hashes = {jit.source_hash()}
+    assert jit.source_hash() in hashes
+    (tmp_path / "kernels.py").write_text("a = 2")
+    hashes.add(jit.source_hash())
+    (tmp_path / "kernels.py").rename(tmp_path / "kernel.py")
+    hashes.add(jit.source_hash())
+    (tmp_path / "more.py").write_text("")
+    hashes.add(jit.source_hash())
+    monkeypatch.setattr("numba.__version__", "0.0")
+    hashes.add(jit.source_hash())
+    assert len(hashes) == 5
+
+
+@jit.kernel(cache=False)
+def blown_up(values):  # type: ignore[no-untyped-def]
+    """What the minimiser asks of its sums."""
+    total = 0.0
+    for value in values:
+        total += value
+    return not abs(total) < np.inf
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_fast_math_keeps_nan_and_inf(bad: float) -> None:
+    values = np.arange(100.0)
+    assert not blown_up(values)
+    values[37] = bad
+    assert blown_up(values)
+
+
+def test_noalias_is_a_promise_not_another_result() -> None:
+    """With and without the promise that arrays do not overlap: the same element-wise arithmetic."""
+
+    def update(x, v, out):  # type: ignore[no-untyped-def]
+        for i in range(x.shape[0]):
+            out[i] = x[i] + 0.1 * v[i]
+
+    x, v = np.random.default_rng(1).normal(size=(2, 1001))
+    plain, promised = np.zeros(1001), np.zeros(1001)
+    jit.kernel(cache=False)(update)(x, v, plain)
+    jit.kernel(cache=False, noalias=True)(update)(x, v, promised)
+    assert np.array_equal(plain, promised)
+    assert plain == pytest.approx(x + 0.1 * v, rel=1e-15, abs=1e-15)
