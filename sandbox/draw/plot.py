@@ -84,7 +84,18 @@ class PlotBox:
         return self.rect.bottom - share * self.rect.height
 
 
-def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], label: str) -> None:
+def unit_of(label: str) -> str:
+    """What stands in the brackets at the end of an axis' name."""
+    return label.rpartition("[")[2].removesuffix("]") if label.endswith("]") else FORCE_UNIT
+
+
+def draw_plot(
+    painter: Painter,
+    rect: pygame.Rect,
+    curves: Sequence[Curve],
+    label: str,
+    stroke_label: str = STROKE_AXIS,
+) -> None:
     """Axes, curves, the last point of the first curve with its number."""
     if rect.height <= 0 or rect.width <= 0:
         return
@@ -106,7 +117,7 @@ def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], labe
     current = ""
     if parts and parts[0][0].size:
         digits = decimals_for(axes[3] - axes[2]) + 2
-        current = f"{number(float(parts[0][1][-1]), digits)} {FORCE_UNIT}"
+        current = f"{number(float(parts[0][1][-1]), digits)} {unit_of(label)}"
     line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
     right = rect.right - 2 * pad
     shown = painter.text(current, right, line, size=BODY, bold=True, anchor="right")
@@ -127,7 +138,7 @@ def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], labe
     )
     if box.rect.width < 10 or box.rect.height < 10:
         return
-    _draw_axes(painter, box, force_ticks, names)
+    _draw_axes(painter, box, force_ticks, names, stroke_label)
     if not current:
         painter.text(
             NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
@@ -145,7 +156,11 @@ def draw_plot(painter: Painter, rect: pygame.Rect, curves: Sequence[Curve], labe
 
 
 def _draw_axes(
-    painter: Painter, box: PlotBox, force_ticks: Sequence[float], names: Sequence[str]
+    painter: Painter,
+    box: PlotBox,
+    force_ticks: Sequence[float],
+    names: Sequence[str],
+    stroke_label: str,
 ) -> None:
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     thin = max(round(scale), 1)
@@ -162,10 +177,10 @@ def _draw_axes(
             colour=theme.soft_text,
             anchor="right",
         )
-    unit = type_.width(STROKE_AXIS, SMALL)
+    unit = type_.width(stroke_label, SMALL)
     line = box.rect.bottom + type_.height(SMALL) + round(2 * scale)
     painter.text(
-        STROKE_AXIS, box.rect.right, line, size=SMALL, colour=theme.soft_text, anchor="right"
+        stroke_label, box.rect.right, line, size=SMALL, colour=theme.soft_text, anchor="right"
     )
     free = box.rect.right - unit - round(14 * scale)
     widest = type_.width("0000", SMALL) * 2

@@ -112,7 +112,7 @@ class Renderer:
         draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)
         draw_header(painter, places.header, frame, chain_top)
         curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
-        draw_plot(painter, places.plot, [curve], frame.curve_label)
+        draw_plot(painter, places.plot, [curve], frame.curve_label, frame.stroke_label)
         draw_status(painter, places.status, frame, rate=rate, paused=paused)
         self._draw_notices(painter, (*frame.notices, *notices))
         painter.flush()
