@@ -13,7 +13,7 @@ import numpy as np
 from core import observables
 from core.generate import Recipe
 from core.packing import Packing
-from core.quasistatic import Increment, Settings
+from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from scenes.parameter import Parameter
 from scenes.registry import register

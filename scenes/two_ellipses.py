@@ -82,9 +82,8 @@ class TwoEllipses(Scene):
         for k, name in enumerate(TIPS):
             tip = _on_circle(grains, k, tilts[k])
             bodies.append(RigidBody(name, "body", position=tip, axis=_tangent(tilts[k])))
-        far = max(distance, 3.0) + 2.0 * float(sizes.max()) * stretch
-        half = 1.6 * float(sizes.max()) * stretch
-        left = -1.3 * stretch - 0.5
+        longest = float(sizes.max()) * stretch
+        left, far, half = -longest - 0.6, max(distance, 2.0) + longest + 0.6, 1.6 * longest
         world = RigidWorld(bodies)
 
         def reach(now: Packing, handle: str, asked: Point) -> Point:
@@ -112,7 +111,7 @@ class TwoEllipses(Scene):
             bounds=(left, -half, far, half),
             outline=[(left, -half), (far, -half), (far, half), (left, half)],
             curve=Curve(
-                "tilt of the left grain to the line of centres [deg]",
+                "tilt of the left grain [deg]",
                 "contact starts early by [% of a diameter]",
                 lambda packing, _: math.degrees(tilts_to_line(packing)[0]) % 180.0,
                 lambda packing, _: 50.0 * early(packing) / float(np.mean(packing.rest_radius)),
