@@ -42,6 +42,8 @@ class RigidContacts:
     overlap: Floats  # Δ [R]
     x: Floats  # a point on the line of action [R]: where they touch
     y: Floats  # in the image nearest to the grain
+    image_x: Floats  # from there to the same point in the body's own image [R]; 0 in an open box
+    image_y: Floats
 
 
 @kernel
@@ -74,7 +76,10 @@ def _measure_pairs(state, support, stiffness, pairs, first, second, box, values)
 
 @kernel
 def _measure_rigid(state, support, stiffness, rigid, box, values):
-    """Fill rows fx, fy, f, Δ, x, y of ``values`` (6, K) for grain–body contacts, packed to the front; returns their number."""
+    """Fill rows fx, fy, f, Δ, x, y, image x, y of ``values`` (8, K) for grain–body contacts, packed to the front.
+
+    Returns their number.
+    """
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     used = 0
     for k in range(rigid.used[0]):
@@ -90,6 +95,8 @@ def _measure_rigid(state, support, stiffness, rigid, box, values):
             values[1, used] = f * (ny - slope * nx)
             values[2, used] = f
             values[3, used] = overlap
+            values[6, used] = x - state[0, i]
+            values[7, used] = y - state[1, i]
             if primitives[m, 0] == rigid_contacts.DISC:
                 # The tangential part of this law turns the grain, not the disc: on the body it acts at the centre.
                 values[4, used] = primitives[m, 1] + state[0, i] - x
@@ -150,7 +157,7 @@ def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
         rigid = rigid._replace(
             grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
         )
-    values = np.empty((6, int(rigid.used[0])))
+    values = np.empty((8, int(rigid.used[0])))
     support = support_coefficients(packing)
     used = _measure_rigid(packing.state, support, packing.contact_stiffness, rigid, box, values)
     return RigidContacts(
@@ -165,8 +172,8 @@ def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Flo
     """
     body = owner[contacts.primitive]
     total = np.zeros((len(placement), 3))
-    lever_x = contacts.x - placement[body, 0]
-    lever_y = contacts.y - placement[body, 1]
+    lever_x = contacts.x + contacts.image_x - placement[body, 0]
+    lever_y = contacts.y + contacts.image_y - placement[body, 1]
     np.add.at(total[:, 0], body, -contacts.fx)
     np.add.at(total[:, 1], body, -contacts.fy)
     np.add.at(total[:, 2], body, -(lever_x * contacts.fy - lever_y * contacts.fx))
