@@ -24,7 +24,7 @@ from core import observables
 from core.errors import InputError
 from core.jit import kernel
 from core.observables import GrainContacts, RigidContacts
-from core.packing import Packing
+from core.packing import Packing, PeriodicBox
 from core.rigid_contacts import DISC
 
 Floats = NDArray[np.float64]
@@ -160,7 +160,7 @@ class FrozenContacts:
     terms: FrictionTerms
     keys: Indices
     primitive: Indices  # of a rigid body; -1 between grains
-    x: Floats  # where they touch [R]
+    x: Floats  # where they touch [R]; with a body: in the body's own image
     y: Floats
 
 
@@ -173,7 +173,7 @@ class FrictionForces:
     primitive: Indices  # of a rigid body; -1 between grains
     fx: Floats  # on grain i [k R]; on the other the opposite
     fy: Floats
-    x: Floats  # where it acts [R]
+    x: Floats  # where it acts [R]; with a body: in the body's own image
     y: Floats
     sliding: NDArray[np.bool_]  # at the Coulomb cap
 
@@ -240,10 +240,12 @@ class Friction:
         owner: Indices,
         before: Floats,
         after: Floats,
+        box: PeriodicBox | None = None,
     ) -> FrozenContacts:
         """Freeze the contacts of a packing for an increment in which the bodies go from ``before`` to ``after`` (B, 3).
 
         ``pairs`` and ``bodies`` are its contacts before the bodies move, ``primitives`` and ``owner`` the bodies' shapes then.
+        ``box`` is the periodic cell afterwards, if it changes.
         """
         support = observables.support_coefficients(packing)
         r = np.hypot(pairs.dx, pairs.dy)
@@ -257,6 +259,13 @@ class Friction:
         offset = ny * (packing.x[pairs.i] - packing.x[pairs.j]) - nx * (
             packing.y[pairs.i] - packing.y[pairs.j]
         )
+        stretch_x, stretch_y = _stretch(
+            packing.box,
+            box,
+            pairs.dx - packing.x[pairs.j] + packing.x[pairs.i],
+            pairs.dy - packing.y[pairs.j] + packing.y[pairs.i],
+        )
+        offset += ny * stretch_x - nx * stretch_y
         contact_x = packing.x[pairs.i] + arm_i * nx
         contact_y = packing.y[pairs.i] + arm_i * ny
         # With bodies, whose contact point moves as prescribed.
@@ -265,12 +274,15 @@ class Friction:
         bx, by = bodies.x - packing.x[g], bodies.y - packing.y[g]
         mx, my = _body_normals(rows, packing, bodies)
         arm_b = np.where(rows[:, 0] == DISC, _arm(support, g, mx, my), np.abs(bx * mx + by * my))
-        body_x, body_y = packing.x[g] + arm_b * mx, packing.y[g] + arm_b * my
+        body_x = packing.x[g] + arm_b * mx + bodies.image_x
+        body_y = packing.y[g] + arm_b * my + bodies.image_y
         body = owner[bodies.primitive]
         shift = after[body] - before[body]
         moved_x = shift[:, 0] - shift[:, 2] * (body_y - before[body, 1])
         moved_y = shift[:, 1] + shift[:, 2] * (body_x - before[body, 0])
-        offset_b = my * packing.x[g] - mx * packing.y[g] + my * moved_x - mx * moved_y
+        stretch_x, stretch_y = _stretch(packing.box, box, bodies.image_x, bodies.image_y)
+        offset_b = my * packing.x[g] - mx * packing.y[g]
+        offset_b += my * (moved_x - stretch_x) - mx * (moved_y - stretch_y)
         keys = np.concatenate(
             [_pair_keys(packing, pairs), packing.label[g] * _GRAIN + _BODY + bodies.primitive]
         )
@@ -338,6 +350,19 @@ class Friction:
         at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
         known: Floats = np.where(self._keys[at] == keys, self._slips[at], 0.0)
         return known
+
+
+def _stretch(
+    old: PeriodicBox | None, new: PeriodicBox | None, x: Floats, y: Floats
+) -> tuple[Floats, Floats]:
+    """How much the distances x, y [R] from grains to images of theirs change with the periodic cell."""
+    if old is None or new is None or new == old:
+        return np.zeros_like(x), np.zeros_like(y)
+    rows = np.rint(y / old.height)
+    columns = np.rint((x - rows * old.shift) / old.width)
+    wider = new.width - old.width if np.isfinite(old.width) else 0.0
+    higher = new.height - old.height if np.isfinite(old.height) else 0.0
+    return columns * wider + rows * (new.shift - old.shift), rows * higher
 
 
 def _arm(support: Floats, grain: Indices, nx: Floats, ny: Floats) -> Floats:

@@ -137,8 +137,9 @@ class Quasistatic:
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
         if self._follow is not None:
             self._follow(self.packing, self.world)
-        self._freeze_friction()
-        self._squeeze(box)
+        stepped = self._step_box(box)
+        self._freeze_friction(stepped)
+        self._squeeze(stepped)
         if self._relaxes and self.drag == 0.0:
             self._predict()
         primitives, _ = self.world.primitives()
@@ -204,27 +205,34 @@ class Quasistatic:
         if self.friction is not None:
             self.friction.select(~gone)
 
-    def _squeeze(self, target: PeriodicBox | None) -> None:
-        """Change the periodic box by one step towards ``target``, and the grains' places with it."""
+    def _step_box(self, target: PeriodicBox | None) -> PeriodicBox | None:
+        """The periodic box one step nearer to ``target``."""
         old = self.packing.box
         if target is None or old is None:
-            return
+            return old
         step = self.settings.step
 
         def towards(now: float, then: float) -> float:
             return now + min(max(then - now, -step), step) if np.isfinite(now) else now
 
-        new = PeriodicBox(
+        return PeriodicBox(
             towards(old.width, target.width),
             towards(old.height, target.height),
             towards(old.shift, target.shift),
         )
+
+    def _squeeze(self, new: PeriodicBox | None) -> None:
+        """Change the periodic box to ``new``, and the grains' places with it: all images of a grain go to those of one place."""
+        old = self.packing.box
+        if new is None or old is None or new == old:
+            return
+        wider = new.width / old.width if np.isfinite(old.width) else 1.0
+        share = self.packing.state[1] / old.height  # 0 if open in y
+        self.packing.state[0] = (
+            self.packing.state[0] - share * old.shift
+        ) * wider + share * new.shift
         if np.isfinite(old.height):
-            share = self.packing.state[1] / old.height
-            self.packing.state[0] += share * (new.shift - old.shift)
             self.packing.state[1] = share * new.height
-        if np.isfinite(old.width):
-            self.packing.state[0] *= new.width / old.width
         self.packing.box = new
 
     def _predict(self) -> None:
@@ -252,7 +260,7 @@ class Quasistatic:
         change *= held * np.minimum(1.0, np.sqrt(now) / np.maximum(distance, 1e-12))
         self.packing.state += change
 
-    def _freeze_friction(self) -> None:
+    def _freeze_friction(self, box: PeriodicBox | None) -> None:
         """Contacts as they were before the bodies moved, for the lagged friction of this increment."""
         if self.friction is None:
             return
@@ -262,7 +270,7 @@ class Quasistatic:
         pairs, bodies = self._contacts or self.contacts()
         self.world.place(moved)
         self._frozen = self.friction.begin(
-            self.packing, pairs, bodies, primitives, owner, self._placement, moved
+            self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
         )
 
     def _observe(self, report: Report, friction: FrictionForces | None) -> Increment:
