@@ -12,10 +12,11 @@ from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter, floats
+from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.text import HEADING
 from sandbox.draw.theme import HAND, magnitude_colours, mix
 from sandbox.draw.words import FORCE_UNIT
-from sandbox.frame import Contacts, Frame, HandleState
+from sandbox.frame import Frame, HandleState
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
@@ -26,9 +27,10 @@ ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px
 
 
 def draw_chains(
-    painter: Painter, rect: pygame.Rect, camera: Camera, contacts: Contacts, top: float
+    painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame, top: float
 ) -> None:
     """A line along every contact: width by the root of the force, colour by the force."""
+    contacts = frame.contacts
     force = floats(contacts.force)
     carrying = force[np.isfinite(force) & (force > 0.0)]
     if not carrying.size:
@@ -40,14 +42,20 @@ def draw_chains(
             np.clip((force / mean - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0),
             np.clip((force / top - FAINT_FROM) / (FAINT_TO - FAINT_FROM), 0.0, 1.0),
         )
-    widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
     order = np.argsort(share, kind="stable")  # the strongest on top
-    ends = tuple(
+    x0, y0, x1, y1 = (
         floats(part[order]) for part in (contacts.x0, contacts.y0, contacts.x1, contacts.y1)
     )
+    if frame.box is not None:
+        outer = np.minimum(x0, x1), np.minimum(y0, y1), np.maximum(x0, x1), np.maximum(y0, y1)
+        index, move_x, move_y = images(frame.box, *outer)
+        x0, x1 = x0[index] + move_x, x1[index] + move_x
+        y0, y1 = y0[index] + move_y, y1[index] + move_y
+        order = order[index]
+    widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
     raster.draw_lines(
-        painter.canvas(rect, camera.transform),
-        ends,
+        painter.canvas(cell_rect(rect, camera, frame.box), camera.transform),
+        (x0, y0, x1, y1),
         widest * np.sqrt(share[order]),
         magnitude_colours(painter.theme, share[order]),
         alpha[order],

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, SMALL
-from sandbox.draw.words import FORCE_UNIT, NO_CURVE, STROKE_AXIS
+from sandbox.draw.words import NO_CURVE, STROKE_AXIS
 
 Floats = NDArray[np.float64]
 
 
-LEAST_FORCE = 0.02  # the axis goes at least this far: it makes no show of rounding noise [k R]
+LEAST_FORCE = 0.01  # the axis goes at least this far: it makes no show of rounding noise [k R]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,8 +85,8 @@ class PlotBox:
 
 
 def unit_of(label: str) -> str:
-    """What stands in the brackets at the end of an axis' name."""
-    return label.rpartition("[")[2].removesuffix("]") if label.endswith("]") else FORCE_UNIT
+    """What stands in the brackets at the end of an axis' name; nothing for a pure number."""
+    return label.rpartition("[")[2].removesuffix("]") if label.endswith("]") else ""
 
 
 def draw_plot(
@@ -117,7 +117,7 @@ def draw_plot(
     current = ""
     if parts and parts[0][0].size:
         digits = decimals_for(axes[3] - axes[2]) + 2
-        current = f"{number(float(parts[0][1][-1]), digits)} {unit_of(label)}"
+        current = f"{number(float(parts[0][1][-1]), digits)} {unit_of(label)}".rstrip()
     line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
     right = rect.right - 2 * pad
     shown = painter.text(current, right, line, size=BODY, bold=True, anchor="right")
@@ -177,6 +177,7 @@ def _draw_axes(
             colour=theme.soft_text,
             anchor="right",
         )
+    stroke_label = type_.shortened(stroke_label, SMALL, 0.5 * box.rect.width)
     unit = type_.width(stroke_label, SMALL)
     line = box.rect.bottom + type_.height(SMALL) + round(2 * scale)
     painter.text(

@@ -14,6 +14,7 @@ from sandbox.draw.layout import Layout, layout
 from sandbox.draw.numbers import RoundScale, typical_largest
 from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
+from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Curve, draw_plot
 from sandbox.draw.status import draw_header, draw_status
 from sandbox.draw.text import BODY, Type
@@ -106,7 +107,8 @@ class Renderer:
         chain_top = None
         if self.chains:
             chain_top = self._chain_scale.follow(typical_largest(frame.contacts.force))
-            draw_chains(painter, places.canvas, self.camera, frame.contacts, chain_top)
+            draw_chains(painter, places.canvas, self.camera, frame, chain_top)
+        draw_cell(painter, places.canvas, self.camera, frame)
         forces = [math.hypot(handle.fx, handle.fy) for handle in frame.handles]
         hand_top = self._hand_scale.follow(max(forces, default=0.0))
         draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, floats
-from sandbox.draw.theme import AUXETIC, REGULAR, Theme, mix
+from sandbox.draw.periodic import cell_rect, images
+from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
 from sandbox.frame import BodyShape, Frame
 
 Floats = NDArray[np.float64]
@@ -43,51 +44,66 @@ def grain_colours(theme: Theme, faded: bool) -> tuple[int, int, int, int]:
 def draw_grains(
     painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame, faded: bool
 ) -> None:
-    """All grains by kind, auxetic ones with their mark."""
-    canvas = painter.canvas(rect, camera.transform)
-    grains = tuple(floats(part) for part in (frame.x, frame.y, frame.p, frame.q1, frame.q2))
-    auxetic = frame.auxetic
+    """All grains by kind, auxetic ones with their mark, and those pointed at with a bright rim."""
+    index, x, y = _places(frame)
+    if not index.size:
+        return
+    canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
+    p, q1, q2 = (floats(part[index]) for part in (frame.p, frame.q1, frame.q2))
+    grains = (x, y, p, q1, q2)
+    auxetic = frame.auxetic[index]
     regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, faded)
     fill = np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill))
     rim = np.where(auxetic, np.uint32(auxetic_rim), np.uint32(regular_rim))
-    raster.draw_ellipses(canvas, grains, fill, rim, outline_width(painter, camera), 1.0)
-    turn = np.zeros(frame.grains) if frame.spin is None else frame.spin
+    width = outline_width(painter, camera)
+    raster.draw_ellipses(canvas, grains, fill, rim, width, 1.0)
+    if frame.highlight is not None:
+        some = np.flatnonzero(frame.highlight[index])
+        ringed = tuple(part[some] for part in grains)
+        bright = np.full(some.size, EVENT, dtype=np.uint32)
+        raster.draw_ellipses(canvas, ringed, fill[some], bright, 2.2 * width, 1.0)
+    turn = np.zeros(index.size) if frame.spin is None else floats(frame.spin[index])
     if bool(auxetic.any()):
-        raster.draw_bow_ties(
-            canvas,
-            grains,
-            floats(turn),
-            mark_openness(frame.p, frame.q1, frame.q2, frame.rest_radius),
-            auxetic,
-            painter.theme.ground,
-            1.0,
-        )
-    if frame.spin is not None and frame.grains:
-        _draw_radius_lines(painter, canvas, frame, frame.spin, rim)
+        openness = mark_openness(p, q1, q2, frame.rest_radius[index])
+        ground = painter.theme.ground
+        raster.draw_bow_ties(canvas, grains, turn, openness, auxetic, ground, 1.0)
+    if frame.spin is not None:
+        _draw_radius_lines(painter, canvas, grains, auxetic, turn, rim)
+
+
+def _places(frame: Frame) -> tuple[NDArray[np.intp], Floats, Floats]:
+    """Which grains are drawn where: each once, and in a periodic cell their images too."""
+    if frame.box is None:
+        return np.arange(frame.grains), floats(frame.x), floats(frame.y)
+    reach = frame.p + np.hypot(frame.q1, frame.q2)
+    x, y = frame.x, frame.y
+    index, move_x, move_y = images(frame.box, x - reach, y - reach, x + reach, y + reach)
+    return index, x[index] + move_x, y[index] + move_y
 
 
 def _draw_radius_lines(
     painter: Painter,
     canvas: raster.Canvas,
-    frame: Frame,
-    spin: Floats,
+    grains: raster.Grains,
+    auxetic: NDArray[np.bool_],
+    turn: Floats,
     colour: NDArray[np.uint32],
 ) -> None:
     """One radius a grain, turned with it; on auxetic grains only the part beside the mark."""
-    cosine, sine = np.cos(spin), np.sin(spin)
-    outward_x = (frame.p + frame.q1) * cosine + frame.q2 * sine
-    outward_y = frame.q2 * cosine + (frame.p - frame.q1) * sine
-    start = np.where(frame.auxetic, 0.55, 0.0)
+    x, y, p, q1, q2 = grains
+    cosine, sine = np.cos(turn), np.sin(turn)
+    outward_x = (p + q1) * cosine + q2 * sine
+    outward_y = q2 * cosine + (p - q1) * sine
+    start = np.where(auxetic, 0.55, 0.0)
     ends = (
-        frame.x + start * outward_x,
-        frame.y + start * outward_y,
-        frame.x + 0.9 * outward_x,
-        frame.y + 0.9 * outward_y,
+        x + start * outward_x,
+        y + start * outward_y,
+        x + 0.9 * outward_x,
+        y + 0.9 * outward_y,
     )
-    radius = canvas[2][0] * frame.p
+    radius = canvas[2][0] * p
     shown = np.where(radius >= SPIN_FROM * 0.5, np.clip(radius / SPIN_FROM, 0.0, 1.0), 0.0)
-    half_width = np.full(frame.grains, 0.8 * painter.scale)
-    raster.draw_lines(canvas, ends, half_width, colour, shown)
+    raster.draw_lines(canvas, ends, np.full(x.size, 0.8 * painter.scale), colour, shown)
 
 
 def draw_bodies(painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame) -> None:

@@ -176,3 +176,36 @@ def empty_frame(**changes: Any) -> Frame:
             **changes,
         },
     )
+
+
+def periodic_frame(shift: float = 3.0, **changes: Any) -> Frame:
+    """A sheared periodic cell of grains that reach over all its sides, some of them pointed at."""
+    frame = intruder_frame(12)
+    width, height = 20.0, 16.0
+    x, y = frame.x % width, frame.y % height
+    i = np.arange(frame.grains - 1)
+    contacts = Contacts(
+        x[i],
+        y[i],
+        x[i] + 1.6,
+        y[i] + 0.5,
+        0.1 + 0.01 * (i % 7).astype(np.float64),
+        np.zeros(i.size, dtype=bool),
+    )
+    return replace(
+        frame,
+        **{
+            "title": "Simple shear",
+            "x": x,
+            "y": y,
+            "contacts": contacts,
+            "bodies": (),
+            "handles": (),
+            "bounds": (-1.0, -1.0, width + 1.0, height + 1.0),
+            "box": (width, height, shift),
+            "highlight": np.arange(frame.grains) % 9 == 0,
+            "curve_label": "shear stress over pressure",
+            "stroke_label": "shear strain",
+            **changes,
+        },
+    )

@@ -59,7 +59,7 @@ def test_axes_hold_the_curve_and_zero(sign: float) -> None:
     assert high == stroke[-1]
     assert bottom <= min((sign * force).min(), 0.0) + 1e-9
     assert top >= max((sign * force).max(), 0.0) - 1e-9
-    assert limits([]) == (0.0, 1.0, 0.0, 0.02)
+    assert limits([]) == (0.0, 1.0, 0.0, 0.01)
 
 
 @pytest.mark.parametrize("points", [0, 1, 2, 3, 5000])

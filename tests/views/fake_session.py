@@ -137,7 +137,7 @@ class FakeSession:
         self.logged = path
 
 
-def wait_until(condition: Callable[[], bool], seconds: float = 10.0) -> None:
+def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
     """Until it holds; fails after a while."""
     patience = time.perf_counter() + seconds
     while not condition():

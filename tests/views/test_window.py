@@ -56,7 +56,7 @@ class Desk:
         self.app.start("intruder")
         self.until(lambda: not self.app._splash)
 
-    def until(self, condition: Callable[[], bool], seconds: float = 10.0) -> None:
+    def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
         patience = time.perf_counter() + seconds
         while not condition():
             assert time.perf_counter() < patience, "waited in vain"
