@@ -1,4 +1,4 @@
-"""A square periodic box that shrinks: Fig. 2d and "Coordination of deformable grains" of Haver et al., doi:10.1073/pnas.2317915121."""
+"""A square periodic box that shrinks: Fig. 2d and "Coordination" of Haver et al., doi:10.1073/pnas.2317915121."""
 
 from __future__ import annotations
 

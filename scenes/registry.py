@@ -9,7 +9,15 @@ from typing import TypeVar
 from core.errors import InputError
 from scenes.scene import Scene
 
-_MODULES = ("single_grain", "two_ellipses", "grain_row", "biaxial_press", "intruder", "hopper")
+_MODULES = (
+    "single_grain",
+    "two_ellipses",
+    "grain_row",
+    "biaxial_press",
+    "biaxial_periodic",
+    "intruder",
+    "hopper",
+)
 _SCENES: dict[str, Scene] = {}
 _S = TypeVar("_S", bound=type[Scene])
 
