@@ -20,7 +20,7 @@ from sandbox.frame import Frame, HandleState
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
-FADE_FROM, FADE_TO = 0.35, 1.3  # of the mean force: where chains begin to show, and show fully
+FADE_FROM, FADE_TO = 0.3, 1.0  # of the mean force: where chains begin to show, and show fully
 FAINT_FROM, FAINT_TO = 0.004, 0.06  # and the same of the scale's top
 KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
 ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px]

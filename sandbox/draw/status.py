@@ -76,7 +76,7 @@ def draw_status(
     lamp_space = round(2 * lamp_radius + 8 * scale)
 
     items = [
-        _Item(frame.scene, 2),
+        _Item(frame.scene.replace("_", " "), 2),
         _Item(words.PACKINGS.get(frame.packing, frame.packing), 4),
         _Item(words.SEED.format(seed=frame.seed), 1),
         _Item(

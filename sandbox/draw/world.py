@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 
 OUTLINE = 1.5  # width on screen at scale 1 [px]
 FADED = 0.35  # how far grains recede into the ground when force chains are shown
+LARGE = 20.0  # reference radius on screen from which grains recede less [px]
 CLOSED_AREA = 0.60  # the mark has closed when a grain has shrunk to this share of its area
 SPIN_FROM = 11.0  # below this mean radius on screen a radius line would only be noise [px]
 
@@ -33,9 +34,8 @@ def outline_width(painter: Painter, camera: Camera) -> float:
     return min(OUTLINE * painter.scale, 0.14 * camera.scale)
 
 
-def grain_colours(theme: Theme, faded: bool) -> tuple[int, int, int, int]:
-    """Fill and outline of regular grains, then of auxetic ones."""
-    recede = FADED if faded else 0.0
+def grain_colours(theme: Theme, recede: float) -> tuple[int, int, int, int]:
+    """Fill and outline of regular grains, then of auxetic ones; ``recede`` in 0..1."""
     fills = [mix(kind, theme.ground, recede) for kind in (REGULAR, AUXETIC)]
     rims = [mix(mix(kind, 0x000000, 0.38), theme.ground, recede) for kind in (REGULAR, AUXETIC)]
     return fills[0], rims[0], fills[1], rims[1]
@@ -52,7 +52,9 @@ def draw_grains(
     p, q1, q2 = (floats(part[index]) for part in (frame.p, frame.q1, frame.q2))
     grains = (x, y, p, q1, q2)
     auxetic = frame.auxetic[index]
-    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, faded)
+    # Chains lie beside much of a large grain, but over most of a small one.
+    recede = FADED * min(LARGE / camera.scale, 1.0) if faded else 0.0
+    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, recede)
     fill = np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill))
     rim = np.where(auxetic, np.uint32(auxetic_rim), np.uint32(regular_rim))
     width = outline_width(painter, camera)
