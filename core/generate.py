@@ -20,7 +20,7 @@ from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point, RigidWorld, polygon_area
-from core.rigid_contacts import EDGE
+from core.rigid_contacts import EDGE, image
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -128,7 +128,8 @@ def pack(
     _grow(packing, primitives, scale, tolerance, progress)
     if target_pressure is not None:
         packing = _to_pressure(packing, primitives, area, target_pressure, tolerance)
-    if outline is not None and not np.all(inside(outline, packing.x, packing.y)):
+    # A region that is periodic in one direction has both: the outline is then one period of it.
+    if outline is not None and not np.all(inside(outline, *packing.folded())):
         raise InputError(
             "the grains do not fit: lower the packing fraction or enlarge the container"
         )
@@ -253,8 +254,9 @@ def _add(
         py = candidates[c, 1]
         free = True
         for m in range(primitives.shape[0]):
-            dx = px - primitives[m, 1]
-            dy = py - primitives[m, 2]
+            dx, dy = image(primitives, m, px, py, box)
+            dx -= primitives[m, 1]
+            dy -= primitives[m, 2]
             if primitives[m, 0] == EDGE:
                 ux = primitives[m, 3]
                 uy = primitives[m, 4]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.packing import Packing
+from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
@@ -58,7 +58,7 @@ def take(view: View) -> Frame:
         rest_radius=packing.rest_radius.copy(),
         poisson_ratio=packing.poisson_ratio.copy(),
         contacts=_contact_lines(view, packing, state[0], state[1]),
-        bodies=tuple(_shape(body) for body in view.setup.world.bodies),
+        bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
         handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
         bounds=view.setup.bounds,
         stroke=view.stroke,
@@ -115,12 +115,18 @@ def _handle_state(view: View, handle: Handle) -> HandleState:
         )
     body = view.setup.world[handle.body]
     push = view.last.reactions[view.setup.world.index(handle.body)]
+    x, target = body.position[0], view.targets.get(handle.body)
+    if box is not None and np.isfinite(box.width):
+        # A body that has gone round is where its image is, and so is the place where it is wanted.
+        x %= box.width
+        if target is not None:
+            target = (target[0] + x - body.position[0], target[1])
     return HandleState(
         name=handle.body,
         label=handle.label,
-        x=body.position[0],
+        x=x,
         y=body.position[1],
-        target=view.targets.get(handle.body),
+        target=target,
         fx=-float(push[0]),
         fy=-float(push[1]),
         radius=handle.radius,
@@ -128,9 +134,12 @@ def _handle_state(view: View, handle: Handle) -> HandleState:
     )
 
 
-def _shape(body: RigidBody) -> BodyShape:
-    """A body's shapes in the world, for drawing."""
-    discs = [(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs]
+def _shape(body: RigidBody, box: PeriodicBox | None) -> BodyShape:
+    """A body's shapes in the world, for drawing; discs folded into the periodic cell."""
+    discs = np.array([(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs])
+    discs = discs.reshape(-1, 3)
+    if box is not None and np.isfinite(box.width):
+        discs[:, 0] %= box.width
     segments = [
         (*body.to_world([(x0, y0), (x1, y1)]).ravel(), radius)
         for x0, y0, x1, y1, radius in body.segments
@@ -138,7 +147,7 @@ def _shape(body: RigidBody) -> BodyShape:
     return BodyShape(
         name=body.name,
         role=body.role,
-        discs=np.array(discs, dtype=np.float64).reshape(-1, 3),
+        discs=discs,
         segments=np.array(segments, dtype=np.float64).reshape(-1, 5),
         polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
     )

@@ -15,6 +15,7 @@ _MODULES = (
     "grain_row",
     "biaxial_press",
     "biaxial_periodic",
+    "couette",
     "intruder",
     "hopper",
 )

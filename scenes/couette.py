@@ -1,0 +1,247 @@
+"""Grains sheared between two serrated plates: Figs. 3 and 4 of Haver et al., doi:10.1073/pnas.2317915121."""
+
+from __future__ import annotations
+
+import math
+
+from core import observables
+from core.generate import pack
+from core.packing import Packing, PeriodicBox
+from core.quasistatic import Increment
+from core.rigid import Point, RigidBody, RigidWorld
+from core.shear import plate_stress
+from scenes.parameter import Parameter
+from scenes.registry import register
+from scenes.scene import (
+    FRICTION,
+    MATERIAL,
+    SOLVER,
+    Check,
+    Curve,
+    Handle,
+    Ingredients,
+    Latest,
+    Progress,
+    Remarks,
+    Scene,
+    Setup,
+    Track,
+    Values,
+    recipe,
+    solver,
+)
+
+TOOTH = 2.0  # period of the teeth [R]
+TOOTH_DISCS = 4  # in one period
+DISC = 1.0 / 3.5  # radius of a plate's discs [R]
+# Notches in which one large grain fits: the discs' centres lie on a circle about it, from tip to tip.
+NOTCH = 1.0 + DISC
+TIP_ANGLE = math.asin(0.5 * TOOTH / NOTCH)
+TIP = NOTCH * math.cos(TIP_ANGLE)  # of the tips' centres below that of a grain in its notch [R]
+GRAINS_A_TOOTH = 16  # 800 grains on 50 teeth, which are 100 R
+STEADY, SMALL, MIDDLE, LARGE = range(4)
+# Amplitudes of the cycles in shear strain; the paper's 0.1°, 2° and 100° of its cell.
+AMPLITUDE = {SMALL: 0.002, MIDDLE: 0.04, LARGE: 2.0}
+QUARTER = 10  # increments in a quarter of a cycle, at least
+
+
+@register
+class Couette(Scene):
+    """Fixed volume, periodic in x; the lower plate is fixed, the upper one slides. The paper's numbers: grains=800."""
+
+    name = "couette"
+    title = "Shear cell"
+    question = "How hard is it to make one half of the grains slide over the other?"
+    about = (
+        "Two plates with teeth, and the grains between them. "
+        "Drag the upper plate: regular grains resist more, unless the pressure is the same."
+    )
+    default_steps = 432
+    parameters = (
+        Parameter(
+            "grains",
+            400,
+            "",
+            160,
+            4000,
+            "number of grains, in steps of 16; the cell is 2 R long for every 16 (paper: 800)",
+        ),
+        Parameter(
+            "packing_fraction",
+            0.88,
+            "",
+            0.5,
+            1.2,
+            "rest area of the grains over the area between the plates; jammed above 0.84",
+        ),
+        Parameter(
+            "protocol",
+            STEADY,
+            "",
+            STEADY,
+            LARGE,
+            "0 steady shear; cycles of 1 small (strain 0.002), 2 middle (0.04), 3 large (2.0) amplitude",
+        ),
+        Parameter("strain", 1.0, "", 0.01, 20.0, "shear strain of the steady shear"),
+        Parameter("cycles", 2, "", 1, 50, "number of cycles"),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
+        *MATERIAL,
+        *SOLVER,
+    )
+
+    def ingredients(self, values: Values) -> Ingredients:
+        return Ingredients(periodic=True, friction=float(values["friction"]) > 0.0)
+
+    def steps(self, values: Values) -> int:
+        if int(values["protocol"]) != STEADY:
+            return 4 * _quarter(values) * int(values["cycles"])
+        return max(1, round(float(values["strain"]) * _cell(values)[2] / float(values["step"])))
+
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
+        grains = recipe(values, packing)
+        teeth, width, height = _cell(values)
+        depth = NOTCH - TIP
+        world = RigidWorld(
+            [
+                RigidBody("lower plate", "wall", discs=_discs(teeth, 1.0)),
+                RigidBody(
+                    "upper plate",
+                    "piston",
+                    position=(0.5 * width, height),
+                    discs=[(x - 0.5 * width, y, r) for x, y, r in _discs(teeth, -1.0)],
+                    axis=(1.0, 0.0),
+                ),
+            ]
+        )
+        # One period of the region, to the bottom of the notches.
+        outline: list[Point] = [
+            (0.0, -depth),
+            (width, -depth),
+            (width, height + depth),
+            (0.0, height + depth),
+        ]
+        packed = pack(
+            grains,
+            seed=seed,
+            outline=outline,
+            world=world,
+            box=PeriodicBox(width),
+            count=GRAINS_A_TOOTH * teeth,
+            tolerance=min(1e-3, float(values["tolerance"])),
+            progress=progress,
+        )
+        top = world["upper plate"]
+
+        def reach(_: Packing, __: str, target: Point) -> Point:
+            # A plate that goes round: a hand means the image of a place that is nearest to it.
+            turns = round((top.position[0] - target[0]) / width)
+            return target[0] + turns * width, target[1]
+
+        return Setup(
+            packing=packed,
+            world=world,
+            solver=solver(values),
+            handles=(Handle("upper plate", "upper plate", (1.0, 0.0), 3.0),),
+            bounds=(0.0, -depth - 2.0 * DISC, width, height + depth + 2.0 * DISC),
+            outline=outline,
+            friction=float(values["friction"]),
+            reach=reach,
+            curve=Curve(
+                "shear strain",
+                "shear stress [k]",
+                lambda _, __: shear_strain(world, height),
+                lambda _, increment: plate_stresses(world, width, increment)[0],
+            ),
+        )
+
+    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+        if increment >= self.steps(values):
+            return None
+        _, _, height = _cell(values)
+        top = setup.world["upper plate"]
+        return {"upper plate": (top.home[0] + height * _strain(values, increment + 1), top.home[1])}
+
+    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+        width = _cell(values)[1]
+        shear, normal = plate_stresses(setup.world, width, latest.now)
+        if normal <= 0.0:
+            return Remarks(("the grains do not reach from plate to plate: nothing holds",))
+        return Remarks(
+            (f"pressure {normal:.4f} k, shear stress over pressure {shear / normal:+.3f}",)
+        )
+
+    def checks(self, setup: Setup, track: Track) -> list[Check]:
+        return [*super().checks(setup, track), _stresses_agree(setup)]
+
+
+def _cell(values: Values) -> tuple[int, float, float]:
+    """Teeth of a plate, width of the cell, and height from the lower to the upper tips' centres [R]."""
+    teeth = int(values["grains"]) // GRAINS_A_TOOTH
+    width = TOOTH * teeth
+    grains = GRAINS_A_TOOTH * teeth * recipe(values, "mixed").mean_area()
+    # What is open of a notch under the line of the tips: the circle's segment less one half of each disc.
+    segment = NOTCH**2 * (TIP_ANGLE - math.sin(TIP_ANGLE) * math.cos(TIP_ANGLE))
+    notch = segment - 0.5 * TOOTH_DISCS * math.pi * DISC**2
+    height = (grains / float(values["packing_fraction"]) - 2.0 * teeth * notch) / width
+    return teeth, width, height
+
+
+def _discs(teeth: int, up: float) -> list[tuple[float, float, float]]:
+    """Discs of a plate whose tips' centres lie at y = 0 and whose grains are above (``up`` = 1) or below it (−1)."""
+    discs = []
+    for tooth in range(teeth):
+        for k in range(TOOTH_DISCS):
+            angle = TIP_ANGLE * (2.0 * k / TOOTH_DISCS - 1.0)
+            x = TOOTH * (tooth + 0.5) + NOTCH * math.sin(angle)
+            discs.append((x, up * (TIP - NOTCH * math.cos(angle)), DISC))
+    return discs
+
+
+def shear_strain(world: RigidWorld, height: float) -> float:
+    """Way of the upper plate over the height between the plates."""
+    top = world["upper plate"]
+    return (top.position[0] - top.home[0]) / height
+
+
+def plate_stresses(world: RigidWorld, width: float, increment: Increment) -> tuple[float, float]:
+    """(shear stress, normal stress) [k] on the upper plate."""
+    return plate_stress(increment.reactions[world.index("upper plate")], width)
+
+
+def _quarter(values: Values) -> int:
+    """Increments in a quarter of a cycle."""
+    way = AMPLITUDE[int(values["protocol"])] * _cell(values)[2]
+    return max(QUARTER, math.ceil(way / float(values["step"])))
+
+
+def _strain(values: Values, increments: int) -> float:
+    """Shear strain that the script asks for after so many increments."""
+    protocol = int(values["protocol"])
+    if protocol == STEADY:
+        return increments * float(values["step"]) / _cell(values)[2]
+    phase = increments / _quarter(values) % 4.0
+    return AMPLITUDE[protocol] * (
+        phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
+    )
+
+
+def _stresses_agree(setup: Setup) -> Check:
+    """The paper's two ways to the stress: the force on the plates, and the sum over the contacts."""
+    name = "normal stress from the plates' force and from the contacts agree within 10 %"
+    if setup.friction > 0.0:
+        return Check(name, None, "contacts are measured without their friction")
+    primitives, owner = setup.world.primitives()
+    contacts = observables.body_contacts(setup.packing, primitives)
+    forces = observables.reactions(contacts, owner, setup.world.placement())
+    assert setup.packing.box is not None
+    width = setup.packing.box.width
+    _, plate = plate_stress(forces[setup.world.index("upper plate")], width)
+    depth = setup.outline[2][1] - setup.outline[1][1]
+    area = width * (depth - (NOTCH - TIP))  # between the plates' mean lines
+    pairs = observables.grain_contacts(setup.packing)
+    inside = float(observables.stress(pairs, area, contacts, setup.packing)[1, 1])
+    if plate < 1e-3:
+        return Check(name, None, f"pressure {plate:.2g} k: too low to compare")
+    return Check(name, abs(inside - plate) < 0.1 * plate, f"{plate:.4f} and {inside:.4f} k")
