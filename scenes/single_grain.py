@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.errors import InputError
 from core.material import area_modulus
 from core.packing import Packing
-from core.quasistatic import Settings
+from core.quasistatic import LONGEST_STEP, Settings
 from core.rigid import Point, RigidBody, RigidWorld
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -70,7 +71,7 @@ class SingleGrain(Scene):
         Parameter(
             "compression", 0.2, "", 1e-4, 0.4, "largest approach of the plates, in diameters"
         ),
-        Parameter("step", 0.005, "R", 1e-4, 0.05, "longest move of the plate in one increment"),
+        Parameter("step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment"),
         Parameter(
             "tolerance",
             1e-8,
@@ -88,6 +89,11 @@ class SingleGrain(Scene):
             "force evaluations after which an increment ends unconverged, and says so",
         ),
     )
+
+    def validate(self, values: Values) -> None:
+        longest = LONGEST_STEP * float(values["radius"])
+        if float(values["step"]) > longest * (1.0 + 1e-9):
+            raise InputError(f"step must be at most {longest:.3g} R for grains of that radius")
 
     def build(
         self, values: Values, packing: str, seed: int, progress: Progress | None = None
