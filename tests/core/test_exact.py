@@ -115,4 +115,4 @@ def test_how_early_contact_starts(aspect: float, percent: float) -> None:
         )
     assert min(early) > -1e-14
     mean, error = 50.0 * np.mean(early), 50.0 * np.std(early) / math.sqrt(len(early))
-    assert mean == pytest.approx(percent, abs=3.0 * error)
+    assert mean == pytest.approx(percent, abs=float(3.0 * error))
