@@ -64,10 +64,10 @@ def yield_stress(strain: Floats, stress: Floats, start: float) -> float:
 
 
 def dilatancy(strain: Floats, normal: Floats, far: float) -> float:
-    """How much the normal stress (M,) [k] rises when the grains are sheared out of the middle: Reynolds' dilatancy at fixed volume.
+    """How much the normal stress (M,) [k] rises when grains are sheared out of the middle: Reynolds' dilatancy at fixed volume.
 
-    Its mean at |strain| ≥ ``far`` less that at |strain| ≤ far/4, see the appendix "Experimental shearing setup". Raises InputError
-    if either is missing.
+    Its mean at |strain| ≥ ``far`` less that at |strain| ≤ far/4; see the appendix "Experimental shearing setup". Raises
+    InputError if either is missing.
     """
     strain, normal = np.abs(np.asarray(strain, dtype=np.float64)), np.asarray(normal)
     out, middle = strain >= far, strain <= 0.25 * far

@@ -108,19 +108,15 @@ def _contact_lines(
 
 def _handle_state(view: View, handle: Handle) -> HandleState:
     box = view.setup.packing.box
+    target = view.targets.get(handle.body)
     if handle.body == "box" and box is not None:
-        target = view.targets.get("box")
-        return HandleState(
-            handle.body, handle.label, box.width, box.height, target, 0.0, 0.0, handle.radius
-        )
+        at = view.setup.box_handle
+        place = (box.width, box.height) if at is None else at(box)
+        x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
+        return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
     body = view.setup.world[handle.body]
     push = view.last.reactions[view.setup.world.index(handle.body)]
-    x, target = body.position[0], view.targets.get(handle.body)
-    if box is not None and np.isfinite(box.width):
-        # A body that has gone round is where its image is, and so is the place where it is wanted.
-        x %= box.width
-        if target is not None:
-            target = (target[0] + x - body.position[0], target[1])
+    x, target = _nearest_image(body.position[0], target, box)
     return HandleState(
         name=handle.body,
         label=handle.label,
@@ -132,6 +128,16 @@ def _handle_state(view: View, handle: Handle) -> HandleState:
         radius=handle.radius,
         axis=body.axis,
     )
+
+
+def _nearest_image(
+    x: float, target: Point | None, box: PeriodicBox | None
+) -> tuple[float, Point | None]:
+    """What has gone round a periodic cell is shown where its image is, and so is the place where it is wanted."""
+    if box is None or not np.isfinite(box.width):
+        return x, target
+    shown = x % box.width
+    return shown, None if target is None else (target[0] + shown - x, target[1])
 
 
 def _shape(body: RigidBody, box: PeriodicBox | None) -> BodyShape:

@@ -16,6 +16,7 @@ _MODULES = (
     "biaxial_press",
     "biaxial_periodic",
     "couette",
+    "avalanches",
     "intruder",
     "hopper",
 )

@@ -73,6 +73,9 @@ class Setup:
     friction: float = 0.0  # Coulomb coefficient, with bodies too; 0: the term does not exist
     gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
+    box_handle: Callable[[PeriodicBox], Point] | None = (
+        None  # where that handle is; None: the corner
+    )
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
     follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
     relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
