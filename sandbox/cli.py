@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay.
+"""The command line: list, play, record, replay, bench.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -134,6 +134,16 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
     replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+
+    bench = command("bench", _bench, "Measure how fast the program is on this machine.")
+    bench.add_argument("--json", metavar="FILE.json", help="write all numbers down")
+    bench.add_argument("--markdown", metavar="FILE.md", help="write the results as a table")
+    bench.add_argument(
+        "--peers",
+        action="store_true",
+        help="also run LAMMPS, ASE and SciPy on the same soft discs, where they are installed",
+    )
+    bench.add_argument("--quick", action="store_true", help="under half a minute, less exact")
     return parser, commands
 
 
@@ -251,6 +261,31 @@ def _replay(options: argparse.Namespace) -> int:
     same = session.state_hash() == log.hash
     print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
     return OK if same else DIFFERENT
+
+
+def _bench(options: argparse.Namespace) -> int:
+    data = arguments.output_file("--json", options.json, [".json"]) if options.json else None
+    table = (
+        arguments.output_file("--markdown", options.markdown, [".md"]) if options.markdown else None
+    )
+    from sandbox import environment
+
+    environment.require_pygame_ce()
+    from core.files import atomic_write
+    from sandbox.studies import bench, bench_report
+
+    def show(section: bench_report.Section) -> None:
+        print(f"{bench_report.as_text(section)}\n", flush=True)
+
+    report = bench.run(quick=options.quick, peers=options.peers, show=show)
+    for path, form in ((data, bench_report.as_json), (table, bench_report.as_markdown)):
+        if path is not None:
+            with atomic_write(path) as file:
+                file.write(form(report).encode())
+    missed = len(report.missed())
+    noun = "target" if missed == 1 else "targets"
+    print(f"{missed} {noun} missed" if missed else "all targets met")
+    return OK
 
 
 def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> Output | None:

@@ -1,0 +1,1 @@
+"""Measurements that take minutes: how fast the program is, and how accurate."""

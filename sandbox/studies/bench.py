@@ -1,0 +1,81 @@
+"""How fast the program is on this machine: every part of the bench, one after the other."""
+
+from __future__ import annotations
+
+import os
+import platform
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from sandbox.studies import (
+    bench_drawing,
+    bench_frames,
+    bench_kernels,
+    bench_peers,
+    bench_scaling,
+    bench_startup,
+)
+from sandbox.studies.bench_report import Report, Section
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How long to look at each part."""
+
+    kernel_seconds: float
+    scaling_seconds: float
+    frames: int
+    drawing_seconds: float
+    repeats: int
+    cold: bool
+
+
+FULL = Plan(12.0, 30.0, 150, 3.0, 3, cold=True)
+QUICK = Plan(2.0, 3.0, 15, 1.0, 1, cold=False)
+
+
+def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
+    """The parts, in order of running; each is a function that takes its time."""
+    plan = QUICK if quick else FULL
+    yield lambda: bench_startup.section(repeats=plan.repeats, cold=plan.cold)
+    yield lambda: bench_kernels.section(seconds=plan.kernel_seconds)
+    yield lambda: bench_peers.section(peers=peers, repeats=plan.repeats)
+    yield lambda: bench_scaling.section(quick=quick, seconds=plan.scaling_seconds)
+    yield lambda: bench_frames.section(frames=plan.frames)
+    yield lambda: bench_drawing.section(seconds=plan.drawing_seconds)
+
+
+def run(*, quick: bool, peers: bool, show: Callable[[Section], None]) -> Report:
+    """Run all parts; ``show`` is told of each as soon as it is done."""
+    report = Report(machine(), quick)
+    for part in parts(quick=quick, peers=peers):
+        section = part()
+        report.sections.append(section)
+        show(section)
+    return report
+
+
+def machine() -> dict[str, Any]:
+    """What the numbers were measured on."""
+    import numba
+    import numpy
+
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "numba": numba.__version__,
+    }
+
+
+def _processor() -> str:
+    """The processor's name; on Linux ``platform`` knows the architecture only."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:  # noqa: PTH123 - no file of ours
+            names = [line.partition(":")[2] for line in file if line.startswith("model name")]
+    except OSError:
+        names = []
+    return names[0].strip() if names else platform.processor() or platform.machine()

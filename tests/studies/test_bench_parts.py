@@ -1,0 +1,274 @@
+"""The parts of the bench: what they look at and how they judge. No test asks how long anything took."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from core.generate import Recipe, pack
+from sandbox.session import Session
+from sandbox.studies import (
+    bench_clock,
+    bench_drawing,
+    bench_frames,
+    bench_peers,
+    bench_report,
+    bench_scaling,
+    bench_startup,
+    soft_discs,
+)
+from sandbox.studies.disc_forces import DiscForces
+
+
+def test_exponent_of_a_power_law() -> None:
+    sizes = [500, 1000, 100_000]
+    assert bench_clock.exponent(sizes, [3.0 * n**1.07 for n in sizes]) == pytest.approx(1.07)
+    assert bench_clock.exponent(sizes, [2.0, 2.0, 2.0]) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_jobs_are_timed_in_turn() -> None:
+    calls: list[str] = []
+    times = bench_clock.in_turn(
+        {"a": lambda n: calls.append("a"), "b": lambda n: calls.append("b")}, seconds=0.0
+    )
+    assert calls[:4] == ["a", "a", "b", "b"]  # to choose how often
+    assert calls[4:] == ["a", "b"] * 3
+    assert {len(t.seconds) for t in times.values()} == {3}
+
+
+def test_least_and_median() -> None:
+    times = bench_clock.Times((3e-6, 1e-6, 2e-6))
+    assert times.data(1e-6) == pytest.approx({"min": 1.0, "median": 2.0})
+
+
+def test_verdicts_say_by_how_much() -> None:
+    assert bench_report.at_most(0.4, 0.45, "0.45") == ("≤ 0.45", True)
+    assert bench_report.at_most(0.9, 0.6, "0.6") == ("≤ 0.6, 50% over", False)
+    assert bench_report.at_least(0.9, 0.9) == ("≥ 90%", True)
+    assert bench_report.at_least(0.8, 0.9) == ("≥ 90%, 10.0 points short", False)
+
+
+def test_report_in_three_forms() -> None:
+    rows = (
+        bench_report.Row("max |F|", "1 µs", "≤ 2 µs", True),
+        bench_report.Row("other", "3 µs", "≤ 2 µs, 50% over", False),
+        bench_report.Row("plain", "4"),
+    )
+    section = bench_report.Section("part", "A part", rows, {"numbers": [1.0]})
+    machine = {"processor": "P", "cores": 2, "python": "3", "numba": "0"}
+    report = bench_report.Report(machine, True, [section])
+    assert [row.what for row in report.missed()] == ["other"]
+    text = bench_report.as_text(section)
+    assert "met: ≤ 2 µs" in text
+    assert "MISSED: ≤ 2 µs, 50% over" in text
+    data = json.loads(bench_report.as_json(report))
+    assert (data["format"], data["version"], data["quick"]) == ("auxetic-sandbox bench", 1, True)
+    assert data["sections"]["part"]["numbers"] == [1.0]
+    assert data["sections"]["part"]["rows"][1] == {
+        "what": "other",
+        "measured": "3 µs",
+        "target": "≤ 2 µs, 50% over",
+        "met": False,
+    }
+    table = bench_report.as_markdown(report).splitlines()[2:]
+    assert all(line.replace(r"\|", "").count("|") == 4 for line in table)
+    assert bench_report.finite([1.0, math.nan, math.inf]) == [1.0, None, None]
+
+
+# Soft discs.
+
+
+def test_discs_file_comes_back(tmp_path: Path) -> None:
+    discs = soft_discs.random_discs(40, 2)
+    path = tmp_path / "discs.npz"
+    soft_discs.write(path, discs)
+    again = soft_discs.read(path)
+    np.testing.assert_array_equal(again.x, discs.x)
+    np.testing.assert_array_equal(again.radius, discs.radius)
+    assert again.side == discs.side
+    area = math.pi * float(np.sum(discs.radius**2))
+    assert area / discs.side**2 == pytest.approx(soft_discs.PACKING_FRACTION)
+
+
+def test_another_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "discs.npz"
+    np.savez(path, x=np.zeros(3))
+    with pytest.raises(InputError, match="not a file of soft discs"):
+        soft_discs.read(path)
+
+
+def test_soft_discs_are_relaxed_as_discs() -> None:
+    discs = soft_discs.random_discs(60, 1)
+    found = soft_discs.relax(discs)
+    assert found.largest_force <= soft_discs.TOLERANCE
+    assert found.energy < found.start_energy
+    # The energy at the start by another program text, and no grain has changed its shape.
+    energy, _, _ = DiscForces(discs)(discs.x, discs.y)
+    assert found.start_energy == pytest.approx(energy / 60, rel=1e-12)
+
+
+def test_forces_for_peers_are_the_slope_of_their_energy() -> None:
+    discs = soft_discs.random_discs(30, 4)
+    forces = DiscForces(discs)
+    _, fx, fy = forces(discs.x, discs.y)
+    step = 1e-6
+    shift = np.zeros(30)
+    shift[7] = step
+    along = forces(discs.x + shift, discs.y)[0] - forces(discs.x - shift, discs.y)[0]
+    up = forces(discs.x, discs.y + shift)[0] - forces(discs.x, discs.y - shift)[0]
+    assert fx[7] == pytest.approx(-along / (2.0 * step), rel=1e-6, abs=1e-7)
+    assert fy[7] == pytest.approx(-up / (2.0 * step), rel=1e-6, abs=1e-7)
+    assert forces.evaluations == 5
+
+
+RUN = {"who": "x", "start_energy": 0.5, "largest_force": 1e-9, "iterations": 10}
+
+
+def test_missing_peers_are_named_and_others_compared() -> None:
+    own = [{**RUN, "seconds": 1.0, "iteration_us": 60.0}]
+    other = [{**RUN, "seconds": s, "iteration_us": 100.0 * s} for s in (2.0, 1.0)]
+    section = bench_peers.judged(
+        own, {"lammps": other, "ase": [{"missing": "ase is not installed"}]}
+    )
+    rows = {row.what: row for row in section.rows}
+    assert rows["ASE FIRE"].measured == "not run: ase is not installed"
+    assert section.data["missing"] == {"ase": "ase is not installed"}
+    assert rows["this program / LAMMPS, an iteration"].met is True
+    assert rows["this program / LAMMPS, the whole"].met is False
+    assert "67% over" in rows["this program / LAMMPS, the whole"].target
+
+
+def test_peers_that_solve_another_problem_are_found_out() -> None:
+    own = [{**RUN, "seconds": 1.0, "iteration_us": 60.0}]
+    other = [{**RUN, "start_energy": 0.6, "seconds": 1.0, "iteration_us": 60.0}]
+    section = bench_peers.judged(own, {"scipy": other})
+    assert any("differs" in row.measured and row.met is False for row in section.rows)
+
+
+@pytest.mark.parametrize("name", list(bench_peers.NAMES))
+def test_each_peer_solves_the_file_or_says_what_is_missing(name: str, tmp_path: Path) -> None:
+    discs = soft_discs.random_discs(60, 1)
+    path = tmp_path / "discs.npz"
+    soft_discs.write(path, discs)
+    runs = bench_peers.ask(name, path, 1)
+    assert len(runs) == 1
+    if "missing" in runs[0]:
+        assert name in runs[0]["missing"] or "mpich" in runs[0]["missing"]
+        assert "\n" not in runs[0]["missing"]
+    else:
+        assert runs[0]["start_energy"] == pytest.approx(soft_discs.relax(discs).start_energy)
+        assert runs[0]["largest_force"] <= 1e-6
+
+
+# Growth.
+
+
+def test_copies_lie_side_by_side() -> None:
+    seed = pack(Recipe("mixed"), seed=1, count=60, packing_fraction=0.8)
+    assert seed.box is not None
+    whole = bench_scaling.tiled(seed, 3, 2, np.random.default_rng(1))
+    assert len(whole) == 360
+    assert whole.box is not None
+    assert (whole.box.width, whole.box.height) == (3 * seed.box.width, 2 * seed.box.height)
+    for name in ("rest_radius", "poisson_ratio", "contact_stiffness"):
+        np.testing.assert_array_equal(
+            getattr(whole, name).reshape(6, 60), np.tile(getattr(seed, name), (6, 1))
+        )
+    last = whole.state[:2, 300:] - seed.state[:2]
+    assert last[0] == pytest.approx(2 * seed.box.width, abs=bench_scaling.NOISE)
+    assert last[1] == pytest.approx(seed.box.height, abs=bench_scaling.NOISE)
+
+
+def test_an_increment_that_is_cut_short_says_so() -> None:
+    seed = pack(Recipe("mixed"), seed=1, count=100, packing_fraction=0.9)
+    found = bench_scaling.increment(seed.copy(), 60.0)
+    assert found["ended"] == "converged"
+    assert found["residual"] <= 1e-2
+    assert bench_scaling.increment(seed.copy(), -1.0)["ended"] == "out of time"
+
+
+def test_tiles_make_the_numbers_they_stand_for() -> None:
+    for count, (columns, rows) in bench_scaling.TILES.items():
+        assert count == bench_scaling.SEED_GRAINS * columns * rows
+    assert set(bench_scaling.QUICK) < set(bench_scaling.TILES)
+
+
+def test_bytes_of_nested_arrays() -> None:
+    assert bench_scaling._bytes([np.zeros(3), (np.zeros(2), (1.0, np.zeros(1, np.uint32)))]) == 44
+
+
+# Frames.
+
+
+def test_drag_runs_to_the_end_of_the_script() -> None:
+    settings = {"grains": 120, "stroke": 0.5, "intruder_radius": 2.0, "step": bench_frames.STEP}
+    session = Session("intruder", "mixed", 1, settings)
+    session.build()
+    found = bench_frames.drag(session, 1000, budget=1000.0)
+    assert len(found.residuals) == len(found.iterations) == len(found.seconds) == 10
+    assert found.late == 0
+    assert found.share == 1.0
+    assert found.middle <= session.settings["tolerance"]
+
+
+def test_a_drag_without_time_still_finishes_its_increments() -> None:
+    settings = {"grains": 120, "stroke": 0.5, "intruder_radius": 2.0}
+    hashes = []
+    for budget in (0.0, 1000.0):
+        session = Session("intruder", "mixed", 1, settings)
+        session.build()
+        found = bench_frames.drag(session, 5, budget=budget)
+        assert len(found.residuals) == 5
+        hashes.append(session.state_hash())
+    assert hashes[0] == hashes[1]
+
+
+def test_shares_count_nan_as_worst() -> None:
+    found = bench_frames.Drag(1, (1e-3, math.nan, 2e-2, 5e-2), (1,) * 4, (0.0,) * 4, 1)
+    assert found.share == 0.5
+    assert found.middle == pytest.approx(0.035)
+
+
+def test_targets_of_the_intruder() -> None:
+    small, large, *others = bench_frames.cases()
+    assert (small.settings["grains"], small.share, small.middle) == (300, 0.90, 1e-2)
+    assert (large.settings["grains"], large.share) == (600, 0.75)
+    assert "hopper" in [case.scene for case in others]
+
+
+def test_scenes_of_few_grains_are_left_out() -> None:
+    case = bench_frames.Case("intruder", {"grains": 50, "intruder_radius": 0.5}, 0.9, 1e-2)
+    section = bench_frames.section(frames=2, selected=[case])
+    for drag in section.data["drags"]:
+        assert drag["grains"] >= bench_frames.LEAST
+        assert drag["frames"] == len(drag["residuals"]) == 2
+    assert len(section.rows) == len(section.data["drags"])
+
+
+# Pictures and start-up.
+
+
+def test_drawing_looks_at_a_frame_with_forces() -> None:
+    section = bench_drawing.section(seconds=0.01, grains=250)
+    assert section.data["contacts"] > 50
+    assert section.rows[0].met is not None
+
+
+@pytest.mark.end_to_end
+def test_first_frame_tells_its_milestones_in_order() -> None:
+    run = bench_startup.first_frame("intruder")
+    marks = list(run["marks"].values())
+    assert list(run["marks"]) == [
+        "imported",
+        "drawing kernels",
+        "solver kernels",
+        "built",
+        "first frame",
+    ]
+    assert marks == sorted(marks)
+    assert marks[-1] <= run["seconds"]
