@@ -52,7 +52,7 @@ class Avalanches(Scene):
         "Every kind of packing under the same pressure, sheared from image to image. "
         "At each drop of the stress, the grains whose forces have changed most light up."
     )
-    default_steps = 500
+    default_steps = 336
     parameters = (
         Parameter("grains", 400, "", 60, 4000, "number of grains, exactly"),
         Parameter("pressure", 0.02, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
