@@ -32,6 +32,7 @@ from scenes.scene import (
 GRAIN = "right grain"
 TIPS = ("left tip", "right tip")
 TURN = 2.5  # of the scripted drive, each increment [deg]
+STEP = 0.1  # longest move of a grain or a tip in one increment; the script asks tips for less [R]
 NEAREST = 0.2  # between the centres that a hand can ask for [R]
 ROUNDING = 1e-12  # of a contact distance [R]
 ALIKE = 1e-6  # a difference of tilts that counts as none [rad]
@@ -49,16 +50,13 @@ class TwoEllipses(Scene):
     default_steps = round(180.0 / TURN)
     parameters = (
         Parameter("aspect", 1.4, "", 1.0, 3.0, "length over width of both ellipses"),
-        Parameter("radius", 1.0, "R", 0.3, 3.0, "mean radius of the right grain; the left has 1 R"),
+        Parameter("radius", 1.0, "R", 0.4, 1.0, "mean radius of the right grain; the left has 1 R"),
         Parameter("tilt", 0.0, "deg", -90.0, 90.0, "of both to the line of centres, at the start"),
         Parameter("distance", 1.9, "R", 0.3, 8.0, "between the centres, at the start"),
         Parameter(
             "mirror", False, "", False, True, "tilt and turn the right grain the other way round"
         ),
         Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "force over overlap"),
-        Parameter(
-            "step", 0.1, "R", 0.002, 0.15, "longest move of a grain or a tip in one increment"
-        ),
     )
 
     def ingredients(self, values: Values) -> Ingredients:
@@ -103,7 +101,7 @@ class TwoEllipses(Scene):
         return Setup(
             packing=grains,
             world=world,
-            solver=Settings(step=float(values["step"])),
+            solver=Settings(step=STEP),
             handles=(
                 Handle(GRAIN, "right grain", (-1.0, 0.0), 0.7 * float(sizes[1])),
                 *(Handle(name, name, (0.0, 1.0), 0.35) for name in TIPS),
