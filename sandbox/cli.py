@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay, bench.
+"""The command line: list, play, record, replay, bench, study.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -144,6 +144,23 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         help="also run LAMMPS, ASE and SciPy on the same soft discs, where they are installed",
     )
     bench.add_argument("--quick", action="store_true", help="under half a minute, less exact")
+
+    study = command("study", _study, "Measure the claims of the paper: tables and figures.")
+    study.add_argument(
+        "name", metavar="NAME", type=argument(arguments.one_of("paper")), help="paper"
+    )
+    study.add_argument(
+        "--out", metavar="DIR", required=True, help="folder for results; what is there is kept"
+    )
+    study.add_argument("--quick", action="store_true", help="fewer seeds, smaller packings")
+    study.add_argument("--only", nargs="+", metavar="CLAIM", help="these claims instead of all")
+    study.add_argument(
+        "--jobs",
+        type=argument(arguments.whole_number(1, 64)),
+        default=2,
+        metavar="N",
+        help="runs at the same time (default: 2)",
+    )
     return parser, commands
 
 
@@ -285,6 +302,28 @@ def _bench(options: argparse.Namespace) -> int:
     missed = len(report.missed())
     noun = "target" if missed == 1 else "targets"
     print(f"{missed} {noun} missed" if missed else "all targets met")
+    return OK
+
+
+def _study(options: argparse.Namespace) -> int:
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies import paper
+
+    paper.choose(options.only)
+    paper.require_matplotlib()
+    folder = paper.prepare_folder(options.out)
+    with stop_like_ctrl_c():
+        outcome = paper.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
+    if outcome.interrupted:
+        print(
+            f"stopped after {outcome.runs} runs: the same command goes on from there",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    width = max(len(row.claim.name) for row in outcome.judged)
+    for row in outcome.judged:
+        print(f"{row.claim.name:<{width}}  {paper.summary(row.finding)}")
+    print(f"table, numbers and figures: {folder / 'claims.md'}, results.json, *.png")
     return OK
 
 

@@ -1,0 +1,89 @@
+"""Figures of a study, with matplotlib and without a screen."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from core.errors import InputError
+from core.files import atomic_write
+from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
+from sandbox.studies.paper_claims import Figure, Line, Panel
+from sandbox.studies.runs import Result
+
+COLOURS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED, "other": 0x555555}
+# Shape tells kinds apart where colour does not.
+MARKS = {"regular": "o", "auxetic": "s", "mixed": "D", "other": "^"}
+PANEL = (4.8, 3.7)  # of one pair of axes [inch]
+MOST_ACROSS = 2
+RESOLUTION = 150  # [dots an inch]
+STYLE: Any = {
+    "font.size": 11.0,
+    "axes.titlesize": 11.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 9.0,
+    "lines.linewidth": 1.6,
+    "lines.markersize": 5.0,
+}
+
+
+def draw(figure: Figure, results: Sequence[Result], path: Path) -> None:
+    """Draw ``figure`` from the runs to a PNG. Raises InputError if it cannot be written."""
+    import matplotlib as mpl
+
+    panels = figure.panels(results)
+    down = -(-len(panels) // MOST_ACROSS)
+    across = min(len(panels), MOST_ACROSS)
+    picture = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure as Canvas
+
+        canvas = Canvas(figsize=(PANEL[0] * across, PANEL[1] * down + 0.4), layout="constrained")
+        FigureCanvasAgg(canvas)
+        canvas.suptitle(figure.title)
+        for place, panel in enumerate(panels):
+            _draw_panel(canvas.add_subplot(down, across, place + 1), panel)
+        canvas.savefig(picture, format="png", dpi=RESOLUTION)
+    try:
+        with atomic_write(path) as file:
+            file.write(picture.getvalue())
+    except OSError as error:
+        raise InputError(
+            f"cannot write {os.fspath(path)}: {(error.strerror or str(error)).lower()}"
+        ) from error
+
+
+def _draw_panel(axes: Any, panel: Panel) -> None:
+    for line in panel.lines:
+        _draw_line(axes, line)
+    axes.set_title(panel.title)
+    axes.set_xlabel(panel.x_label)
+    axes.set_ylabel(panel.y_label)
+    if panel.log_x:
+        axes.set_xscale("log")
+    if panel.log_y:
+        axes.set_yscale("log")
+    if any(line.label for line in panel.lines):
+        axes.legend()
+
+
+def _draw_line(axes: Any, line: Line) -> None:
+    colour = f"#{COLOURS[line.kind]:06X}"
+    style = {"color": colour, "label": line.label or None}
+    if line.points:
+        style |= {"linestyle": "none", "marker": MARKS[line.kind]}
+    else:
+        style |= {"linestyle": "--" if line.dashed else "-"}
+    if line.spread is None:
+        axes.plot(line.x, line.y, **style)
+    else:
+        axes.errorbar(line.x, line.y, yerr=line.spread, capsize=2.5, **style)

@@ -1,0 +1,287 @@
+"""Runs of scenes in several processes, each kept in a file of its own, so that an interrupted study goes on where it stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from multiprocessing import connection
+from multiprocessing.synchronize import Event
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.errors import InputError
+from core.files import atomic_write
+from core.warmup import compile_kernels
+from sandbox import __version__
+from sandbox.commands import Protocol
+from sandbox.interrupts import deferred
+from sandbox.session import Session
+from sandbox.studies.paper_probes import PROBES
+from scenes.parameter import Value
+from scenes.scene import Ingredients
+
+DATA_VERSION = 1  # of what a run writes down; raise it when probes change
+SLICE = 400  # force evaluations between two looks at whether to stop: a fraction of a second
+LOST = "the process that ran it ended without a word"
+
+
+@dataclass(frozen=True)
+class Request:
+    """One run: what ``Session`` is asked, for how long, and what is looked at after each increment."""
+
+    scene: str
+    packing: str
+    seed: int = 1
+    settings: tuple[tuple[str, Value], ...] = ()
+    steps: int | None = None  # increments of the scripted drive; None: all of it
+    probe: str = "curve"
+
+    def of(self, name: str) -> Value:
+        """The value of a setting that the request names."""
+        return dict(self.settings)[name]
+
+    def key(self) -> str:
+        """Name of the run's file: changes with all that the run depends on, the defaults of its scene too."""
+        asked = asdict(self)
+        try:
+            session = Session(self.scene, self.packing, self.seed, dict(self.settings))
+            asked["settings"] = sorted(session.settings.items())
+            asked["steps"] = self.steps or session.scene.steps(session.settings)
+        except InputError:
+            pass  # the run will say so
+        words = json.dumps([asked, DATA_VERSION, __version__], sort_keys=True)
+        return f"{self.scene}-{hashlib.sha256(words.encode()).hexdigest()[:16]}"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run came to. ``columns`` hold one number an increment, row 0 is the start; ``failure`` says why there are none."""
+
+    request: Request
+    columns: Mapping[str, list[float]] = field(default_factory=dict)
+    lists: Mapping[str, list[float]] = field(default_factory=dict)  # of no fixed length
+    converged: float = 0.0  # share of the increments
+    seconds: float = 0.0
+    failure: str | None = None
+
+    def column(self, name: str) -> np.ndarray:
+        """A column (M,) float64."""
+        return np.array(self.columns[name], dtype=np.float64)
+
+
+class Stopped(Exception):
+    """The study was interrupted."""
+
+
+class RunFailed(Exception):
+    """The run broke off: its numbers are not what was asked for."""
+
+
+def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> Result:
+    """Carry out a run. Raises InputError for a request that its scene refuses, RunFailed, or Stopped."""
+
+    def check(*_: object) -> None:
+        if stopping():
+            raise Stopped
+
+    began = time.perf_counter()
+    session = Session(request.scene, request.packing, request.seed, dict(request.settings))
+    steps = request.steps or session.scene.steps(session.settings)
+    session.build(check)
+    session.submit(Protocol(True))
+    probe = PROBES[request.probe]()
+    rows = [probe.look(session)]
+    while len(rows) <= steps:
+        check()
+        if session.advance(SLICE):
+            rows.append(probe.look(session))
+        elif session.idle:
+            break
+    reasons = session.history.column("stop_reason")[1:]
+    if len(reasons) and str(reasons[-1]) in ("not finite", "collapsed"):
+        raise RunFailed(f"{reasons[-1]} at increment {len(reasons)} of {steps}")
+    columns = {name: [row[name] for row in rows] for name in rows[0]}
+    return Result(
+        request,
+        columns,
+        probe.lists(),
+        float(np.mean(reasons == "converged")) if len(reasons) else 1.0,
+        time.perf_counter() - began,
+    )
+
+
+class Store:
+    """The files of finished runs in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def path(self, request: Request) -> Path:
+        """Where a run is kept."""
+        return self.folder / f"{request.key()}.json"
+
+    def read(self, request: Request) -> Result | None:
+        """The run, if it was finished; a failed one, or a damaged file, is tried again."""
+        try:
+            data = json.loads(self.path(request).read_text(encoding="utf-8"))
+            if data["failure"] is not None:
+                return None
+            return Result(
+                request,
+                data["columns"],
+                data["lists"],
+                float(data["converged"]),
+                float(data["seconds"]),
+            )
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def write(self, result: Result) -> None:
+        """Keep a run, whole or not at all."""
+        text = json.dumps({**asdict(result), "data_version": DATA_VERSION})
+        with deferred(), atomic_write(self.path(result.request)) as file:
+            file.write(text.encode())
+
+
+def run_all(
+    requests: Sequence[Request],
+    store: Store,
+    jobs: int,
+    done: Callable[[Result], None],
+    compiling: Callable[[], None] = lambda: None,
+) -> None:
+    """Carry out what ``store`` does not hold yet, ``jobs`` at a time; ``done`` is told each, failed ones too.
+
+    Kernels are compiled once before the rest begins; ``compiling`` is told. Raises KeyboardInterrupt after all
+    processes have ended.
+    """
+    waiting = list(reversed(requests))
+    if not waiting:
+        return
+    with _Pool(jobs) as pool:
+        compiling()
+        pool.call(
+            _warm, _terms(requests)
+        ).exception()  # what fails here fails again, and is told then
+        under_way: dict[Future[Result], Request] = {}
+        while waiting or under_way:
+            while waiting and len(under_way) < jobs:
+                request = waiting.pop()
+                under_way[pool.call(_execute, request)] = request
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                request = under_way.pop(future)
+                error = future.exception()
+                if error is None:
+                    result = future.result()
+                elif isinstance(error, BrokenProcessPool):
+                    result = Result(request, failure=LOST)
+                elif isinstance(error, (InputError, RunFailed)):
+                    result = Result(request, failure=str(error))
+                else:
+                    result = Result(request, failure=f"{type(error).__name__}: {error}")
+                store.write(result)
+                done(result)
+
+
+class _Pool:
+    """Processes that hear no Ctrl-C, end when told so or when this one is gone, and are replaced if one dies."""
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._context = multiprocessing.get_context("spawn")
+        self._stop = self._context.Event()
+        self._executor: ProcessPoolExecutor | None = None
+
+    def __enter__(self) -> _Pool:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stop.set()
+        if self._executor is not None:
+            with deferred():
+                self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def call(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
+        """Have ``function`` called in some process."""
+        with _signals_blocked():  # a new process inherits that, and leaves Ctrl-C to this one
+            try:
+                return self._running().submit(function, *arguments)
+            except BrokenProcessPool:
+                self._executor = None
+                return self._running().submit(function, *arguments)
+
+    def _running(self) -> ProcessPoolExecutor:
+        if self._executor is None:
+            self._executor = ProcessPoolExecutor(
+                self._jobs, self._context, _begin, (self._stop, os.getpid())
+            )
+        return self._executor
+
+
+_stop: Event | None = None  # of this process, if it is one of a pool
+
+
+def _begin(stop: Event, parent: int) -> None:
+    """In a new process of the pool."""
+    global _stop
+    _stop = stop
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    process = multiprocessing.parent_process()
+    if process is not None and process.pid == parent:
+
+        def end_with_parent() -> None:
+            connection.wait([process.sentinel])
+            os._exit(1)
+
+        threading.Thread(target=end_with_parent, daemon=True).start()
+
+
+def _execute(request: Request) -> Result:
+    return execute(request, lambda: _stop is not None and _stop.is_set())
+
+
+def _terms(requests: Sequence[Request]) -> tuple[Ingredients, ...]:
+    """All sorts of kernels that the requests need, each once."""
+    found: dict[Ingredients, None] = {}
+    for request in requests:
+        try:
+            session = Session(request.scene, request.packing, request.seed, dict(request.settings))
+        except InputError:
+            continue
+        found[session.scene.ingredients(session.settings)] = None
+    return tuple(found)
+
+
+def _warm(sorts: Sequence[Ingredients]) -> None:
+    for terms in sorts:
+        compile_kernels(
+            periodic=terms.periodic,
+            rigid=terms.rigid,
+            friction=terms.friction,
+            gravity=terms.gravity,
+        )
+
+
+@contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Ctrl-C waits until the end of the block. Windows knows no such mask; there ``_begin`` comes a little later."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
