@@ -26,6 +26,7 @@ FORMAT = "auxetic-sandbox packing"
 FORMAT_VERSION = 1
 MAX_GRAINS = 2_000_000
 MAX_LENGTH = 1e9
+MAX_LABEL = 2**30  # contacts are remembered by a number made of two labels
 # What zipfile, zlib and numpy raise for damaged and for hostile files.
 UNREADABLE = (
     ArithmeticError,
@@ -135,6 +136,8 @@ class Packing:
             )
         if np.unique(self.label).size != count:
             raise InputError("grain labels must differ from one another")
+        if np.any((self.label < 0) | (self.label >= MAX_LABEL)):
+            raise InputError(f"grain labels must be from 0 to {MAX_LABEL - 1}")
         check_material(self.poisson_ratio, self.contact_stiffness)
 
     def __len__(self) -> int:
