@@ -24,7 +24,7 @@ from core import observables
 from core.errors import InputError
 from core.jit import kernel
 from core.observables import GrainContacts, RigidContacts
-from core.packing import Packing, PeriodicBox
+from core.packing import MAX_LABEL, Packing, PeriodicBox
 from core.rigid_contacts import DISC
 
 Floats = NDArray[np.float64]
@@ -32,8 +32,8 @@ Indices = NDArray[np.int64]
 
 TANGENTIAL_STIFFNESS = 0.5  # k_t over C
 SPIN_MASS = 2.0  # inertia of a spin over R0², relative to x and y
-_BODY = 2**30  # keys of primitives begin here; labels of grains stay below
-_GRAIN = 2**31
+_BODY = MAX_LABEL  # keys of primitives begin here; labels of grains stay below
+_GRAIN = 2 * MAX_LABEL
 
 
 class FrictionTerms(NamedTuple):
@@ -162,6 +162,8 @@ class FrozenContacts:
     primitive: Indices  # of a rigid body; -1 between grains
     x: Floats  # where they touch [R]; with a body: in the body's own image
     y: Floats
+    dx: Floats  # branch vector from grain i to grain j, or to where it touches the body [R]
+    dy: Floats
 
 
 @dataclass(frozen=True)
@@ -175,6 +177,8 @@ class FrictionForces:
     fy: Floats
     x: Floats  # where it acts [R]; with a body: in the body's own image
     y: Floats
+    dx: Floats  # branch vector from grain i to grain j, or to where it touches the body [R]
+    dy: Floats
     sliding: NDArray[np.bool_]  # at the Coulomb cap
 
     def reactions(self, owner: Indices, placement: Floats) -> Floats:
@@ -189,6 +193,13 @@ class FrictionForces:
         lever_y = self.y[on_body] - placement[body, 1]
         np.add.at(total[:, 2], body, lever_x * fy - lever_y * fx)
         return total
+
+    def stress(self, area: float, *, bodies: bool = False) -> Floats:
+        """What friction adds to ``observables.stress``: (1/area) Σ_c F_i d_j (2, 2) [k], with or without contacts with bodies."""
+        counts = (self.j >= 0) | bodies
+        fx, fy, dx, dy = (v[counts] for v in (self.fx, self.fy, self.dx, self.dy))
+        tensor = [[np.sum(fx * dx), np.sum(fx * dy)], [np.sum(fy * dx), np.sum(fy * dy)]]
+        return -np.array(tensor) / area
 
 
 class Friction:
@@ -314,6 +325,8 @@ class Friction:
             primitive=np.concatenate([np.full(len(pairs.i), -1), bodies.primitive]),
             x=np.concatenate([contact_x, body_x]),
             y=np.concatenate([contact_y, body_y]),
+            dx=np.concatenate([pairs.dx, arm_b * mx]),
+            dy=np.concatenate([pairs.dy, arm_b * my]),
         )
 
     def end(self, frozen: FrozenContacts, packing: Packing, turned: Floats) -> FrictionForces:
@@ -340,6 +353,8 @@ class Friction:
             fy=-pull * terms.ty,
             x=frozen.x,
             y=frozen.y,
+            dx=frozen.dx,
+            dy=frozen.dy,
             sliding=sliding,
         )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -68,11 +68,7 @@ def remember(friction: Friction, frozen: FrozenContacts, packing: Packing, seed:
     blank[pair] += terms.ty[pair] * packing.y[terms.j[pair]]
     slips = share * terms.cap / terms.stiffness
     still = frozen.terms._replace(offset=blank + slips)
-    friction.end(
-        FrozenContacts(still, frozen.keys, frozen.primitive, frozen.x, frozen.y),
-        packing,
-        np.zeros(len(packing)),
-    )
+    friction.end(replace(frozen, terms=still), packing, np.zeros(len(packing)))
 
 
 def case(
@@ -205,6 +201,41 @@ def test_forces_add_up_to_nothing(seed: int, box: PeriodicBox | None) -> None:
     moved, turned = wander(made.packing, seed, 0.1)
     _, forces = evaluate(made.freeze().terms, moved, turned)
     assert np.abs(forces[:2].sum(axis=1)).max() <= 100 * EPSILON * np.abs(forces).max()
+
+
+def test_stress_counts_friction() -> None:
+    """In equilibrium Σ_c F_i d_j over all contacts is symmetric, and is what the bodies' forces at their places make of it.
+
+    That follows from Σ_c F = 0 and Σ_c (torque) = 0 on every grain: for spins and shapes each on their own. All is balanced to
+    1e-9 of forces of 1 k R, but t and the levers are those before the last increment, so that one is a repetition.
+    """
+    packing, world = box_of_grains()
+    settings = Settings(0.05, 1e-9, force_floor=1e-6, max_iterations=50_000)
+    engine = Quasistatic(packing, world, settings, Friction(MU, len(packing)))
+    for k in range(40):
+        engine.begin({"plate": (min(0.05 * k, 0.2), world["plate"].position[1])})
+        increment = engine.relax(50_000)
+    assert increment is not None
+    assert increment.report.reason is StopReason.CONVERGED
+    friction, bodies = increment.friction, increment.body_contacts
+    assert friction is not None
+    bare = observables.stress(increment.grain_contacts, 1.0, bodies, packing)
+    whole = bare + friction.stress(1.0, bodies=True)
+    assert abs(whole[0, 1] - whole[1, 0]) < 1e-6
+    assert np.abs(friction.stress(1.0)).max() > 1e-2
+    outside = friction.j < 0
+    expected = -np.array(
+        [
+            [
+                np.sum(f * bodies.x) + np.sum(g * friction.x[outside]),
+                np.sum(f * bodies.y) + np.sum(g * friction.y[outside]),
+            ]
+            for f, g in ((bodies.fx, friction.fx[outside]), (bodies.fy, friction.fy[outside]))
+        ]
+    )
+    assert whole == pytest.approx(expected, abs=1e-6)
+    inner = observables.stress(increment.grain_contacts, 1.0) + friction.stress(1.0)
+    assert np.abs(inner - whole).max() > 0.1
 
 
 @given(st.integers(0, 30), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
@@ -520,6 +551,30 @@ def test_impossible_coefficients(coefficient: float) -> None:
     with pytest.raises(InputError, match="greater than 0") as error:
         Friction(coefficient, 3)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("label", [[0, 2**30], [-1, 4]])
+def test_impossible_labels(label: list[int]) -> None:
+    """A memory is found by a number made of both labels: they must fit."""
+    with pytest.raises(InputError, match="from 0 to 1073741823"):
+        Packing([0.0, 1.0], [0.0, 0.0], label=label)
+    largest = Packing([0.0, 1.9], [0.0, 0.0], label=[2**30 - 1, 0])
+    friction = Friction(MU, 2)
+    none = np.zeros((0, 3))
+    friction.end(freeze(friction, largest, RigidWorld(), none, none), largest, np.zeros(2))
+    assert set(friction.remembered()) == {(0, 2**30 - 1)}
+
+
+@pytest.mark.parametrize("row", range(6))
+def test_nan_is_found(row: int) -> None:
+    """Also through the bounds of the force, which would turn it into the cap."""
+    made = case(3)
+    terms = made.freeze().terms
+    relaxation = Relaxation(made.packing, made.world.primitives()[0], terms)
+    relaxation.run(1)
+    (place,) = np.flatnonzero(relaxation._minimizer.identity == terms.i[0])
+    relaxation._minimizer.state[row, place] = np.nan
+    assert relaxation.run(1).reason is StopReason.NOT_FINITE
 
 
 @pytest.mark.parametrize("count", [0, 1])
