@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core import observables, reference
-from core.packing import Packing
+from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from tests.core import examples
@@ -173,11 +173,16 @@ def test_third_law(seed: int) -> None:
     assert abs(torque + np.sum(reactions[:, 2] + lever)) <= 12e-14 * scale
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_reactions_are_virtual_work(seed: int) -> None:
-    """Force and torque on a body = −dE/d(position, angle) with the grains held still."""
-    packing = examples.random_grains(25, 9.0, seed)
+@pytest.mark.parametrize("box", examples.BOXES.values(), ids=examples.BOXES.keys())
+@pytest.mark.parametrize("seed", range(2))
+def test_reactions_are_virtual_work(seed: int, box: PeriodicBox | None) -> None:
+    """Force and torque on a body = −dE/d(position, angle) with the grains held still, also across periodic sides."""
     world = examples.bodies()
+    if box is None:
+        packing = examples.random_grains(25, 9.0, seed)
+    else:
+        packing = examples.random_grains(80, 18.0, seed, box)
+        world.remove("floor")
     primitives, owner = world.primitives()
     contacts = observables.body_contacts(packing, primitives)
     measured = observables.reactions(contacts, owner, world.placement())

@@ -108,9 +108,9 @@ def test_measured_contacts(seed: int) -> None:
     assert found == {p for p in near if reference.grain_contact(packing, grains, *p) is not None}
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_measured_reactions(seed: int) -> None:
-    packing = examples.random_grains(20, 9.0, seed)
+@pytest.mark.parametrize("box", examples.BOXES.values(), ids=examples.BOXES.keys())
+def test_measured_reactions(box: PeriodicBox | None) -> None:
+    packing = examples.random_grains(60, 18.0, 0, box)
     primitives, _ = examples.bodies().primitives()
     contacts = observables.body_contacts(packing, primitives)
     owner = np.arange(len(primitives))
