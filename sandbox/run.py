@@ -146,7 +146,8 @@ class Run:
 
     def _remark(self, before: Increment | None, left: int) -> Remarks:
         """What the scene has to say about the newest increment."""
-        latest = Latest(before, self._last, self.history.curve, left, self._last_exit)
+        at_rest = self.setup.drag > 0.0 and not self._moving
+        latest = Latest(before, self._last, self.history.curve, left, self._last_exit, at_rest)
         return self.scene.remarks(self.setup, self.values, latest)
 
     def _next_targets(self) -> dict[str, Point]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.arches import arch
 from core.errors import InputError
@@ -165,7 +166,11 @@ class Hopper(Scene):
         since = float(stroke) - latest.last_exit[0]
         if since < DIAMETER or force <= max(latest.last_exit[1], 0.0):
             return Remarks()
-        found = arch_between(setup, latest, "left wall", "right wall")
+        bodies = latest.now.body_contacts
+        body = setup.world.primitives()[1][bodies.primitive]
+        side = np.where(body == setup.world.index("left wall"), -1, 0)
+        side[body == setup.world.index("right wall")] = 1
+        found = standing_arch(setup, latest, side)
         grains = "" if found is None else f", held by an arch of {int(found.sum())} grains"
         return Remarks(
             (f"clogged: {since / DIAMETER:.1f} diameters of stroke, nothing left{grains}",), found
@@ -189,15 +194,13 @@ class Shape:
         self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
 
 
-def arch_between(setup: Setup, latest: Latest, left: str, right: str) -> np.ndarray | None:
-    """The grains (N,) of the arch between two walls, or None."""
-    bodies = latest.now.body_contacts
-    _, owner = setup.world.primitives()
-    body = owner[bodies.primitive]
-    side = np.where(body == setup.world.index(left), -1, 0)
-    side[body == setup.world.index(right)] = 1
+def standing_arch(
+    setup: Setup, latest: Latest, side: NDArray[np.int64]
+) -> NDArray[np.bool_] | None:
+    """The grains (N,) of the arch over the orifice, or None. ``side`` of each contact with a body: see ``core.arches``."""
     base = min(y for _, y in setup.outline)
-    chain = arch(setup.packing, latest.now.grain_contacts, bodies, side, base)
+    contacts = latest.now.grain_contacts, latest.now.body_contacts
+    chain = arch(setup.packing, *contacts, side, base)
     if not len(chain):
         return None
     highlight = np.zeros(len(setup.packing), dtype=bool)

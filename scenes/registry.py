@@ -19,6 +19,7 @@ _MODULES = (
     "avalanches",
     "intruder",
     "hopper",
+    "gravity_hopper",
 )
 _SCENES: dict[str, Scene] = {}
 _S = TypeVar("_S", bound=type[Scene])

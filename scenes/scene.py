@@ -96,6 +96,7 @@ class Latest:
     curve: NDArray[np.float64]  # (2, M) what is plotted so far
     left: int  # grains that left in this increment
     last_exit: tuple[float, float]  # stroke and force when a grain last left
+    at_rest: bool = False  # with drag: the grains have come to rest
 
 
 @dataclass(frozen=True)

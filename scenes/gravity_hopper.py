@@ -1,0 +1,219 @@
+"""A hopper that empties by itself, under gravity: the term that Haver et al., doi:10.1073/pnas.2317915121, name as missing.
+
+Compare their Fig. 6e–g, where a piston pushes instead. Clogging by arches: To, Lai and Pak, doi:10.1103/PhysRevLett.86.71.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from core import observables
+from core.errors import InputError
+from core.generate import pack
+from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.hopper import WALL, Shape, standing_arch
+from scenes.parameter import Parameter
+from scenes.registry import register
+from scenes.scene import (
+    FRICTION,
+    MATERIAL,
+    SOLVER,
+    Check,
+    Curve,
+    Handle,
+    Ingredients,
+    Latest,
+    Outlet,
+    Progress,
+    Remarks,
+    Scene,
+    Setup,
+    Track,
+    Values,
+    recipe,
+    solver,
+)
+
+DROP = 5.0  # a grain this far below the lips has left [R]
+ROOM = 3.0  # between the grains and the brim at the start [R]
+SHAKE = 1.0  # how far the funnel can be shaken to either side [R]
+LEAST_CHANNEL = 1.0  # height of the filled channel above the funnel [R]
+PAUSE = 60  # increments; a grain that nothing holds has left, or found a hold, long before
+REST, TREMBLE = 240, 80  # increments of the scripted drive without and with shaking
+
+
+@register
+class GravityHopper(Scene):
+    """No piston: the grains sink.
+
+    A quasistatic solver knows no inertia and no time, so an increment here is a step of slow motion: a drag, as of honey,
+    lets a free grain sink by ``fall`` and holds nothing that rests. Arches and clogs are those of Coulomb's law; the rate of
+    the flow is that of the honey. Once everything has come to rest the hopper is empty or clogged, and waits for a hand.
+    """
+
+    name = "gravity_hopper"
+    title = "Hopper under gravity"
+    question = "Will it run empty, or will an arch hold the rest?"
+    about = (
+        "The grains sink through a narrow orifice by their own weight. "
+        "When an arch blocks it, take the funnel and shake it."
+    )
+    default_steps = 960
+    parameters = (
+        Parameter("grains", 200, "", 20, 2000, "number of grains, near enough"),
+        Parameter(
+            "orifice",
+            3.0,
+            "diameters",
+            0.3,
+            8.0,
+            "width of the orifice in diameters of a large grain",
+        ),
+        Parameter(
+            "angle", 45.0, "deg", 0.0, 75.0, "angle of the funnel's sides from the horizontal"
+        ),
+        Parameter("width", 20.0, "R", 8.0, 80.0, "width of the channel"),
+        Parameter(
+            "tilt", 0.0, "deg", -40.0, 40.0, "tilt of the hopper: turns gravity to the right"
+        ),
+        Parameter("gravity", 0.01, "k/R", 0.0005, 0.05, "weight of a large grain over k R"),
+        Parameter(
+            "fall", 0.1, "R", 0.01, 0.3, "how far a grain that nothing holds sinks in one increment"
+        ),
+        Parameter("shake", 0.8, "R", 0.0, SHAKE, "amplitude of the scripted shaking"),
+        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION),
+        Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
+        *MATERIAL,
+        # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
+        *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
+    )
+
+    def ingredients(self, values: Values) -> Ingredients:
+        return Ingredients(friction=float(values["friction"]) > 0.0, gravity=True)
+
+    def validate(self, values: Values) -> None:
+        shape = Shape(values)
+        if shape.lip_x > shape.half_width - 0.5:
+            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
+        if shape.channel < LEAST_CHANNEL:
+            raise InputError(
+                "too few grains to fill the funnel: raise grains, or lower width or angle"
+            )
+
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
+        shape = Shape(values)
+        half_width, neck, lip = shape.half_width, shape.neck, (shape.lip_x, shape.lip_y)
+        top = neck + shape.channel
+        tilt, weight = math.radians(float(values["tilt"])), float(values["gravity"])
+        brim = top + ROOM + half_width * abs(math.tan(tilt))
+        right: list[Point] = [lip, (half_width, neck), (half_width, brim)]
+        left: list[Point] = [(-x, y) for x, y in reversed(right)]
+        full: list[Point] = [
+            lip,
+            (half_width, neck),
+            (half_width, top),
+            (-half_width, top),
+            *left[1:],
+        ]
+        walls = [wall("right", right, WALL), wall("left", left, WALL)]
+        px, py = (
+            half_width,
+            neck,
+        )  # the hand takes the funnel by its shoulder, not in front of the orifice
+        funnel = RigidBody(
+            "funnel",
+            "body",
+            position=(px, py),
+            segments=[
+                (x0 - px, y0 - py, x1 - px, y1 - py, radius)
+                for side in walls
+                for x0, y0, x1, y1, radius in side.segments
+            ],
+            axis=(1.0, 0.0),
+            travel=(-SHAKE, SHAKE),
+        )
+        lid = wall("lid", [(half_width, top), (-half_width, top)], WALL)
+        gate = wall("gate", [(-lip[0], lip[1]), lip], WALL)
+        packed = pack(
+            recipe(values, packing),
+            seed=seed,
+            outline=full,
+            world=RigidWorld([*walls, lid, gate]),
+            packing_fraction=shape.fraction,
+            progress=progress,
+        )
+        count = len(packed)
+        return Setup(
+            packing=packed,
+            world=RigidWorld([funnel]),
+            solver=solver(values),
+            handles=(Handle("funnel", "funnel", (1.0, 0.0), 3.0),),
+            bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
+            outline=[*left, *right],
+            outlet=Outlet(-DROP, shape.opening),
+            friction=float(values["friction"]),
+            gravity=(weight * math.sin(tilt), -weight * math.cos(tilt)),
+            drag=weight / float(values["fall"]),
+            curve=Curve(
+                "increments",
+                "grains that have left",
+                None,
+                lambda now, _: float(count - len(now)),
+            ),
+        )
+
+    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+        """Shaking now and then: pauses of ``REST`` increments, then ``TREMBLE`` of shaking."""
+        if not len(setup.packing):
+            return None
+        amplitude, funnel = float(values["shake"]), setup.world["funnel"]
+        k = increment % (REST + TREMBLE) - REST
+        if k < 0 or amplitude == 0.0:
+            return {"funnel": funnel.home}
+        quarter = max(1, math.ceil(amplitude / setup.solver.step))
+        phase = (k + 1) / quarter % 4.0
+        sway = phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
+        return {"funnel": (funnel.home[0] + amplitude * sway, funnel.home[1])}
+
+    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+        del values
+        count = len(setup.packing)
+        if not count:
+            return Remarks(("empty",))
+        if not latest.at_rest:
+            return Remarks(("flowing",) if latest.left else ())
+        bodies = latest.now.body_contacts
+        middle = setup.world["funnel"].position[0] - setup.world["funnel"].home[0]
+        side = np.where(bodies.x < middle, -1, 1)
+        found = standing_arch(setup, latest, side)
+        if found is None:
+            return Remarks((f"at rest: {count} grains stay on the funnel's sides",))
+        return Remarks(
+            (f"clogged: an arch of {int(found.sum())} holds {count} grains. Shake the funnel",),
+            found,
+        )
+
+    def checks(self, setup: Setup, track: Track) -> list[Check]:
+        funnel = setup.world["funnel"]
+        moved = funnel.position[0] - funnel.home[0]
+        there = replace(setup, outline=[(x + moved, y) for x, y in setup.outline])
+        return [*super().checks(there, track), _nothing_hangs(setup, track)]
+
+
+def _nothing_hangs(setup: Setup, track: Track) -> Check:
+    name = "no grain hangs in the air"
+    out = track.grains_out
+    if len(out) <= PAUSE or out[-1] > out[-PAUSE]:
+        return Check(name, None, "the grains are on their way")
+    pairs = observables.grain_contacts(setup.packing)
+    bodies = observables.body_contacts(setup.packing, setup.world.primitives()[0])
+    held = np.zeros(len(setup.packing), dtype=bool)
+    for grains in (pairs.i, pairs.j, bodies.grain):
+        held[grains] = True
+    loose = int((~held).sum())
+    return Check(name, loose == 0, f"{loose} of {len(held)} grains touch nothing")
