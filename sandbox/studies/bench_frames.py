@@ -24,6 +24,7 @@ BALANCED, MEDIAN = 3e-2, 1e-2  # relative residuals
 SLICE = 25  # iterations between two looks at the clock
 STEP = 0.05  # [R] = 3 R/s over 60 frames a second
 PACKINGS = ("regular", "mixed", "auxetic")
+OTHERS = 0.4  # of the frames, for scenes without a target
 LEAST = 50  # scenes of fewer grains are no question of speed
 
 
@@ -121,12 +122,13 @@ def measure(case: Case, packing: str, frames: int) -> dict[str, Any] | None:
 
 
 def section(*, frames: int, selected: Sequence[Case] | None = None) -> Section:
-    """Every case with every kind of grains that its scene knows."""
+    """Every case with every kind of grains that its scene knows; ``frames`` of each that has a target."""
     rows, data = [], []
     for case in cases() if selected is None else selected:
+        count = frames if case.share is not None else max(1, round(OTHERS * frames))
         known = registry.get(case.scene).packings
         for packing in [p for p in PACKINGS if p in known]:
-            found = measure(case, packing, frames)
+            found = measure(case, packing, count)
             if found is not None:
                 data.append(found)
                 rows.append(row_of(case, found))

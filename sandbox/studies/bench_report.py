@@ -104,7 +104,8 @@ def at_most(value: float, limit: float, shown: str) -> tuple[str, bool]:
     """Target text and verdict of ``value`` ≤ ``limit``; where it is missed, by how much."""
     if value <= limit:
         return f"≤ {shown}", True
-    return f"≤ {shown}, {value / limit - 1.0:.0%} over", False
+    over = value / limit - 1.0
+    return f"≤ {shown}, {over:.0%} over" if over >= 0.1 else f"≤ {shown}, {over:.1%} over", False
 
 
 def at_least(share: float, limit: float) -> tuple[str, bool]:
