@@ -209,6 +209,35 @@ def stress(
     return tensor / area
 
 
+def grain_stress(
+    packing: Packing, pairs: GrainContacts, bodies: RigidContacts, primitives: Floats
+) -> Floats:
+    """Mean stress inside each grain from its normal forces (3, N) [k]: pressure, and the deviator's two parts; compression positive.
+
+    σ = (1/A) Σ_c f h n⊗n with the area A = π(p² − |q|²), normal force f, its direction n at angle φ and the support function h: the
+    work of the contacts in a uniform strain of the grain, as f is conjugate to h. Hence p = Σ f h / 2A and the deviator is
+    Σ f h (cos 2φ, sin 2φ) / 2A; the difference of the principal stresses is twice its length. One circle between two plates that
+    push with F: p = F/(πR), difference 2F/(πR). ``primitives`` (M, 8) are those that ``bodies`` touch.
+    """
+    count = len(packing)
+    grain = np.concatenate([pairs.i, pairs.j, bodies.grain])
+    force = np.concatenate([pairs.normal_force, pairs.normal_force, bodies.normal_force])
+    # A disc's force has a tangential part; its normal runs through both centres.
+    disc = primitives[bodies.primitive, 0] == rigid_contacts.DISC
+    nx = np.where(disc, packing.x[bodies.grain] - bodies.x, bodies.fx)
+    ny = np.where(disc, packing.y[bodies.grain] - bodies.y, bodies.fy)
+    dx = np.concatenate([pairs.dx, pairs.dx, nx])
+    dy = np.concatenate([pairs.dy, pairs.dy, ny])
+    square = np.maximum(dx * dx + dy * dy, 1e-290)
+    c2, s2 = (dx * dx - dy * dy) / square, 2.0 * dx * dy / square
+    s, u, v = support_coefficients(packing)[:, grain]
+    work = force * np.sqrt(np.maximum(s + u * c2 + v * s2, 0.0))
+    p, q1, q2 = packing.state[2:]
+    area = np.pi * (p * p - q1 * q1 - q2 * q2)
+    total = [np.bincount(grain, part, count) for part in (work, work * c2, work * s2)]
+    return np.array(total) / np.maximum(2.0 * area, 1e-290)
+
+
 def pressure(tensor: Floats) -> float:
     """P = ½ tr σ [k]."""
     return 0.5 * float(np.trace(tensor))

@@ -108,6 +108,8 @@ class Quasistatic:
         self._start_box = packing.box
         self._placement: Floats = world.placement()
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
+        self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
+        self._own_motion: Floats = np.zeros_like(self._carried)
         self._last_moved: dict[str, Point] = {}
         self._moved: dict[str, Point] = {}
         self._stopped: dict[str, str] = {}
@@ -140,6 +142,7 @@ class Quasistatic:
         stepped = self._step_box(box)
         self._freeze_friction(stepped)
         self._squeeze(stepped)
+        self._carried = self.packing.state[:2].copy()
         if self._relaxes and self.drag == 0.0:
             self._predict()
         primitives, _ = self.world.primitives()
@@ -178,6 +181,7 @@ class Quasistatic:
             forces = self.friction.end(self._frozen, self.packing, self._relaxation.turned())
         self._relaxation = None
         self._last = self.packing.state - self._start
+        self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._moved
         return self._observe(report, forces)
 
@@ -195,12 +199,17 @@ class Quasistatic:
         """How far any grain has moved in the latest increment [R]."""
         return float(np.hypot(*self._last[:2]).max(initial=0.0))
 
+    def own_motion(self) -> Floats:
+        """Displacements in the latest increment beyond those of the periodic cell (2, N) [R]: of x and y."""
+        return self._own_motion.copy()
+
     def remove(self, gone: NDArray[np.bool_]) -> None:
         """Take the grains marked in ``gone`` (N,) out of the packing."""
         if self._relaxation is not None:
             raise RuntimeError("grains cannot leave in the middle of an increment")
         self.packing = self.packing.select(~gone)
         self._last = np.ascontiguousarray(self._last[:, ~gone])
+        self._own_motion = np.ascontiguousarray(self._own_motion[:, ~gone])
         self._contacts = self.contacts()
         if self.friction is not None:
             self.friction.select(~gone)

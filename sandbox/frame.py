@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 BodyRole = Literal["wall", "piston", "intruder", "body"]
 
@@ -100,6 +101,10 @@ class Frame:
     q2: FloatArray  # (N,) elongation along the diagonal [R]
     rest_radius: FloatArray  # (N,) radius with no force on the grain [R]
     poisson_ratio: FloatArray  # (N,) negative where auxetic
+    label: IntArray  # (N,) stays with a grain for life
+    pressure: FloatArray  # (N,) mean pressure in the grain, from its contact forces [k]
+    stress_difference: FloatArray  # (N,) of the principal stresses in the grain [k]
+    motion: FloatArray  # (2, N) x and y, in the latest increment beyond the periodic cell's [R]
 
     # What touches what, and what holds it.
     contacts: Contacts

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.observables import grain_stress
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody
@@ -44,6 +45,8 @@ def take(view: View) -> Frame:
     last = view.last.report
     state = packing.state.copy()
     state[:2] = packing.folded()
+    primitives, _ = view.setup.world.primitives()
+    stress = grain_stress(packing, view.last.grain_contacts, view.last.body_contacts, primitives)
     return Frame(
         scene=view.scene.name,
         title=view.scene.title,
@@ -57,7 +60,11 @@ def take(view: View) -> Frame:
         q2=state[4],
         rest_radius=packing.rest_radius.copy(),
         poisson_ratio=packing.poisson_ratio.copy(),
-        contacts=_contact_lines(view, packing, state[0], state[1]),
+        label=packing.label.copy(),
+        pressure=stress[0],
+        stress_difference=2.0 * np.hypot(stress[1], stress[2]),
+        motion=view.engine.own_motion(),
+        contacts=_contact_lines(view, packing, primitives, state[0], state[1]),
         bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
         handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
         bounds=view.setup.bounds,
@@ -84,11 +91,14 @@ def take(view: View) -> Frame:
 
 
 def _contact_lines(
-    view: View, packing: Packing, x: NDArray[np.float64], y: NDArray[np.float64]
+    view: View,
+    packing: Packing,
+    primitives: NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
 ) -> Contacts:
     """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
     pairs, bodies = view.last.grain_contacts, view.last.body_contacts
-    primitives, _ = view.setup.world.primitives()
     grain_x, grain_y = x[bodies.grain], y[bodies.grain]
     body_x = bodies.x + grain_x - packing.x[bodies.grain]
     body_y = bodies.y + grain_y - packing.y[bodies.grain]

@@ -166,3 +166,49 @@ def test_rises_less_drops_is_the_way(force: list[float]) -> None:
     assert np.all(drops > 0.0)
     if curve.size:
         assert rises.sum() - drops.sum() == pytest.approx(curve[-1] - curve[0], abs=1e-9)
+
+
+def test_pressure_in_one_squeezed_grain() -> None:
+    """A circle between two others, pushed with F: p = F/(πR), difference of the principal stresses 2F/(πR)."""
+    radius = 1.3
+    packing = Packing([0.0, 2.5, 5.0], [1.0, 1.0, 1.0], rest_radius=radius)
+    pairs = observables.grain_contacts(packing)
+    none = np.zeros((0, 8))
+    bodies = observables.body_contacts(packing, none)
+    pressure, along, across = observables.grain_stress(packing, pairs, bodies, none)
+    force = float(packing.contact_stiffness[0]) * (2.0 * radius - 2.5)
+    assert pressure[1] == pytest.approx(force / (math.pi * radius))
+    assert along[1] == pytest.approx(force / (math.pi * radius))
+    assert across == pytest.approx(np.zeros(3))
+    assert pressure[0] == pytest.approx(0.5 * pressure[1])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pressure_in_grains_is_work_per_growth(seed: int) -> None:
+    """Σ p_i A_i = dE/d ln λ / 2 when all shapes grow by λ about centres that stay: among grains and among bodies."""
+    packing = examples.random_grains(40, 9.0, seed)
+    world = examples.bodies()
+    primitives = world.primitives()[0]
+    pressure = observables.grain_stress(
+        packing,
+        observables.grain_contacts(packing),
+        observables.body_contacts(packing, primitives),
+        primitives,
+    )[0]
+    p, q1, q2 = packing.state[2:]
+    total = float(np.sum(pressure * np.pi * (p * p - q1 * q1 - q2 * q2)))
+
+    def energy(growth: float) -> float:
+        """Of the contacts alone: what the grains store themselves is left out."""
+        grown = packing.copy()
+        grown.state[2:] *= growth
+        pairs = observables.grain_contacts(grown)
+        bodies = observables.body_contacts(grown, primitives)
+        return 0.5 * float(
+            np.sum(pairs.normal_force * pairs.overlap)
+            + np.sum(bodies.normal_force * bodies.overlap)
+        )
+
+    work = (energy(1.0 + STEP) - energy(1.0 - STEP)) / (2.0 * STEP)
+    assert total > 0.0
+    assert total == pytest.approx(0.5 * work, rel=1e-4)
