@@ -102,7 +102,7 @@ def test_repeats_and_resets(name: str, kind: str) -> None:
     start = fresh.state_hash()
     assert start != first.state_hash()
     first.submit(Reset())
-    first.advance(2_000)
+    first.settle()
     assert first.state_hash() == start
     assert list(first.history.rows()) == list(fresh.history.rows())
     first.submit(Protocol(True))
