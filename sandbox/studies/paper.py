@@ -143,9 +143,10 @@ def _run(
             request = result.request
             bar.set_description_str(f"{request.scene}, {request.packing}"[:32].ljust(32), False)
             bar.update()
-            if result.failure is not None:
+            if result.trouble is not None:
+                what = "failed" if result.failure else "ended early"
                 bar.write(
-                    f"failed: {request.scene}, {request.packing}, seed {request.seed}: {result.failure}",
+                    f"{what}: {request.scene}, {request.packing}, seed {request.seed}: {result.trouble}",
                     file=sys.stderr,
                 )
 
@@ -163,7 +164,8 @@ def _draw(
 
     for claim in claims:
         mine = [results[request] for request in plans[claim.name]]
-        if any(result.failure is not None for result in mine):
+        short = claim.bears_short_runs
+        if any(result.failure or (result.ended and not short) for result in mine):
             continue
         for figure in claim.figures:
             draw(figure, mine, folder / f"{figure.file}.png")

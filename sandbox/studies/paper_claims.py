@@ -113,16 +113,21 @@ class Claim:
     runs: Callable[[bool], Sequence[Request]]
     judge: Callable[[Sequence[Result]], Finding]
     figures: tuple[Figure, ...] = field(default=())
+    bears_short_runs: bool = False  # ``judge`` knows what to do with runs that ended early
 
     def find(self, results: Sequence[Result]) -> Finding:
-        """Judge, unless a run has failed. ``results`` are those of ``runs``, in any order."""
-        failed = [result for result in results if result.failure is not None]
+        """Judge, unless a run has failed or ended early. ``results`` are those of ``runs``, in any order."""
+        failed = [
+            result
+            for result in results
+            if result.failure is not None or (result.ended and not self.bears_short_runs)
+        ]
         if failed:
             first = failed[0].request
             which = f"{first.scene}, {first.packing}, seed {first.seed}"
             return Finding(
                 None,
-                f"{len(failed)} of {len(results)} runs failed, the first ({which}): {failed[0].failure}",
+                f"{len(failed)} of {len(results)} runs failed, the first ({which}): {failed[0].trouble}",
             )
         try:
             return self.judge(results)

@@ -58,6 +58,13 @@ def _compression(result: Result) -> Floats:
     return compression
 
 
+def _force(result: Result) -> Floats:
+    """The paper's normalised force: that on the plate over k times the width of the grain (M,)."""
+    width = 2.0 * result.column("radius") * (1.0 + result.column("width_strain"))
+    force: Floats = result.column("force") / width
+    return force
+
+
 def _strain_ratio(result: Result) -> Floats:
     """−(strain of the width)/(strain of the height) after the start, (M − 1,)."""
     ratio: Floats = -result.column("width_strain")[1:] / result.column("height_strain")[1:]
@@ -97,9 +104,7 @@ def judge_stiffness(results: Sequence[Result]) -> Finding:
         slopes.append(float(stiffness[0] - share * (stiffness[1] - stiffness[0])))
     worst = float(np.max(np.abs(np.array(slopes) - 1.0)))
     tenth = {
-        round(_poisson_ratio(r), 2): cross(
-            _compression(r), r.column("force") / (2.0 * r.column("radius")), 0.1
-        )
+        round(_poisson_ratio(r), 2): cross(_compression(r), _force(r), 0.1)
         for r in where(results, "radius", 1.0)
     }
     apart = ", ".join(f"{number(f)} for ν = {number(nu, 2)}" for nu, f in sorted(tenth.items()))
@@ -107,7 +112,7 @@ def judge_stiffness(results: Sequence[Result]) -> Finding:
         worst < SMALL_ERROR,
         f"stiffness differs from k by {number(worst, 2)} k at most, must be < {SMALL_ERROR} k",
         (Measured("stiffness", "k", (float(np.mean(slopes)),)),),
-        f"force over k times the diameter at 10 % compression: {apart}",
+        f"force over k times width at 10 % compression: {apart}",
     )
 
 
@@ -129,20 +134,19 @@ def single_grain_panels(results: Sequence[Result]) -> list[Panel]:
             )
         )
         ratios.append(Line(label, kind, percent[1:], _strain_ratio(result), dashed=dashed))
-        forces.append(Line(label, kind, percent, 0.5 * result.column("force"), dashed=dashed))
+        forces.append(Line(label, kind, percent, _force(result), dashed=dashed))
     for radius in RADII:
         for result in results:
             if result.request.of("radius") == radius and abs(_poisson_ratio(result) + 0.82) < 0.01:
-                pressure = result.column("force") / (2.0 * radius)
                 line = Line(
                     f"radius {number(radius)} R",
-                    "auxetic",
+                    "other" if radius < 1.0 else "auxetic",
                     100.0 * _compression(result),
-                    pressure,
+                    _force(result),
                     points=radius != 1.0,
                 )
                 sizes.append(line)
-    squeeze, force = "compression [%]", "force / (k × diameter)"
+    squeeze, force = "compression [%]", "force / (k × width)"
     return [
         Panel("Strains of a grain", "height lost [%]", "width gained [%]", tuple(strains)),
         Panel("Poisson's ratio", squeeze, "−width strain / height strain", tuple(ratios)),

@@ -27,8 +27,8 @@ from sandbox.studies.paper_claims import (
 from sandbox.studies.paper_probes import CHANGE_BINS
 from sandbox.studies.runs import Request, Result
 
-FRACTIONS = (0.87, 0.89, 0.92, 0.96)  # packing fractions of all kinds
-AUXETIC_FRACTION = 1.0  # one more for auxetic grains, to reach the pressures of the others
+FRACTIONS = (0.85, 0.87, 0.9, 0.94)  # packing fractions of all kinds
+AUXETIC_FRACTIONS = (1.0, 1.08)  # more for auxetic grains, to reach the pressures of the others
 STEADY, SMALL, MIDDLE = 0, 1, 2  # protocols of the scene
 FLOWS = 0.3  # shear strain after which the flow counts as steady
 COLLAPSE = 1.33  # factor within which values at equal pressure count as the same
@@ -44,7 +44,7 @@ def _cell(
     """Runs of the shear cell for all kinds and the given packing fractions; the auxetic one more."""
     requests = []
     for packing, setting in kinds((0.8, -0.8) if quick else (0.8, 0.0, -0.8)):
-        last = (AUXETIC_FRACTION,) if packing == "auxetic" and len(fractions) > 1 else ()
+        last = AUXETIC_FRACTIONS if packing == "auxetic" and len(fractions) > 1 else ()
         requests += [
             Request(
                 "couette",
@@ -68,7 +68,9 @@ def _cell(
 def small_cycles(quick: bool) -> list[Request]:
     """Fig. 3: cycles of shear strain 0.002."""
     fractions = FRACTIONS[::2] if quick else FRACTIONS
-    return _cell(quick, SMALL, fractions, cycles=1 if quick else 2, tolerance=1e-3)
+    return _cell(
+        quick, SMALL, fractions, cycles=2 if quick else 3, tolerance=1e-4, max_iterations=50_000
+    )
 
 
 def steady_shears(quick: bool) -> list[Request]:
@@ -80,12 +82,21 @@ def steady_shears(quick: bool) -> list[Request]:
 
 def middle_cycles(quick: bool) -> list[Request]:
     """Appendix: cycles that are larger, and yet reversible."""
-    return _cell(quick, MIDDLE, (MIDDLE_FRACTION,), cycles=1 if quick else 3)
+    return [
+        request
+        for friction in (0.5, 0.0)
+        for request in _cell(
+            quick, MIDDLE, (MIDDLE_FRACTION,), cycles=1 if quick else 3, friction=friction
+        )
+    ]
 
 
 def modulus(result: Result) -> float:
-    """G [k]."""
-    return shear_modulus(result.column("stroke"), result.column("force"))
+    """G [k] of the last cycle: in the first ones a packing that was never sheared still settles."""
+    cycles = int(result.request.of("cycles"))
+    strain, stress = result.column("stroke"), result.column("force")
+    last = slice((len(strain) - 1) // cycles * (cycles - 1), None)
+    return shear_modulus(strain[last], stress[last])
 
 
 def yielding(result: Result) -> float:
@@ -237,22 +248,27 @@ def judge_friction(results: Sequence[Result]) -> Finding:
 
 
 def judge_dilatancy(results: Sequence[Result]) -> Finding:
-    """Normal stress far from the middle of a cycle, less that in the middle."""
+    """Normal stress far from the middle of a cycle, less that in the middle; with friction, as in the experiment."""
 
     def rise(result: Result) -> float:
         return dilatancy(result.column("stroke"), result.column("normal"), FAR) / pressure(result)
 
-    measured = [
-        Measured.of(label(nu), "of the pressure", over_seeds(of_ratio(results, nu), rise))
-        for nu in ratios(results)
-    ]
-    least = min(measured, key=lambda m: m.mean - SURE * m.error)
+    rough, smooth = (
+        [
+            Measured.of(label(nu), "of the pressure", over_seeds(of_ratio(runs, nu), rise))
+            for nu in ratios(runs)
+        ]
+        for runs in (where(results, "friction", 0.5), where(results, "friction", 0.0))
+    )
+    least = min(rough, key=lambda m: m.mean - SURE * m.error)
+    without = ", ".join(str(measured) for measured in smooth)
     return Finding(
         surely_above(least.mean, least.error, 0.0),
-        f"rise of the pressure from the middle of a cycle to its ends, {least.what}: {number(least.mean, 2)} ± "
-        f"{number(least.error, 2)} of the pressure, must exceed 0 by {SURE:g} standard errors for all kinds",
-        tuple(measured),
-        "the paper could not distinguish a strong difference between the kinds",
+        "rise of the pressure from the middle of a cycle to its ends with friction 0.5, "
+        f"{least.what}: {number(least.mean, 2)} ± {number(least.error, 2)} of the pressure, "
+        f"must exceed 0 by {SURE:g} standard errors for all kinds",
+        tuple(rough),
+        f"without friction, where packings are known not to dilate (doi:10.1103/PhysRevE.78.011307): {without}",
     )
 
 
@@ -315,6 +331,7 @@ def avalanches(quick: bool) -> list[Request]:
                 ("grains", 200 if quick else 400),
                 ("pressure", 0.02),
                 ("strain", 0.3 if quick else 0.5),
+                ("step", 0.05 if quick else 0.02),
                 ("tolerance", 1e-3),
                 setting,
             ),

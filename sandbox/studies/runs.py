@@ -34,6 +34,8 @@ from scenes.scene import Ingredients
 
 DATA_VERSION = 1  # of what a run writes down; raise it when probes change
 SLICE = 400  # force evaluations between two looks at whether to stop: a fraction of a second
+# Reasons to stop a relaxation after which the scripted drive does not go on.
+BROKEN = {"collapsed": "a grain was squeezed flat", "not finite": "the numbers blew up"}
 LOST = "the process that ran it ended without a word"
 
 
@@ -67,14 +69,23 @@ class Request:
 
 @dataclass(frozen=True)
 class Result:
-    """What a run came to. ``columns`` hold one number an increment, row 0 is the start; ``failure`` says why there are none."""
+    """What a run came to. ``columns`` hold one number an increment, row 0 is the start.
+
+    ``failure`` says why there are none, ``ended`` why there are fewer than were asked for.
+    """
 
     request: Request
     columns: Mapping[str, list[float]] = field(default_factory=dict)
     lists: Mapping[str, list[float]] = field(default_factory=dict)  # of no fixed length
     converged: float = 0.0  # share of the increments
     seconds: float = 0.0
+    ended: str | None = None
     failure: str | None = None
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the run is not what was asked for, or None."""
+        return self.failure or self.ended
 
     def column(self, name: str) -> np.ndarray:
         """A column (M,) float64."""
@@ -85,12 +96,8 @@ class Stopped(Exception):
     """The study was interrupted."""
 
 
-class RunFailed(Exception):
-    """The run broke off: its numbers are not what was asked for."""
-
-
 def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> Result:
-    """Carry out a run. Raises InputError for a request that its scene refuses, RunFailed, or Stopped."""
+    """Carry out a run. Raises InputError for a request that its scene refuses, or Stopped."""
 
     def check(*_: object) -> None:
         if stopping():
@@ -110,8 +117,9 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
         elif session.idle:
             break
     reasons = session.history.column("stop_reason")[1:]
-    if len(reasons) and str(reasons[-1]) in ("not finite", "collapsed"):
-        raise RunFailed(f"{reasons[-1]} at increment {len(reasons)} of {steps}")
+    ended = None
+    if len(reasons) and str(reasons[-1]) in BROKEN:
+        ended = f"{BROKEN[str(reasons[-1])]} at increment {len(reasons)} of {steps}"
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     return Result(
         request,
@@ -119,6 +127,7 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
         probe.lists(),
         float(np.mean(reasons == "converged")) if len(reasons) else 1.0,
         time.perf_counter() - began,
+        ended,
     )
 
 
@@ -144,6 +153,7 @@ class Store:
                 data["lists"],
                 float(data["converged"]),
                 float(data["seconds"]),
+                data["ended"],
             )
         except (OSError, ValueError, KeyError, TypeError):
             return None
@@ -187,7 +197,7 @@ def run_all(
                     result = future.result()
                 elif isinstance(error, BrokenProcessPool):
                     result = Result(request, failure=LOST)
-                elif isinstance(error, (InputError, RunFailed)):
+                elif isinstance(error, InputError):
                     result = Result(request, failure=str(error))
                 else:
                     result = Result(request, failure=f"{type(error).__name__}: {error}")

@@ -67,9 +67,11 @@ def _footnote(results: Sequence[Result], about: Mapping[str, Any]) -> str:
     work = sum(result.seconds for result in good)
     quick = "quick, " if about.get("quick") else ""
     failed = len(results) - len(good)
+    short = sum(result.ended is not None for result in good)
     return (
-        f"{len(good)} runs ({quick}{failed or 'none'} failed), {increments} increments, {share} of them converged to the "
-        f"scene's tolerance within its budget; {work / 60.0:.1f} minutes of one core."
+        f"{len(good)} runs ({quick}{failed or 'none'} failed, {short or 'none'} ended early), "
+        f"{increments} increments, {share} of them converged to the scene's tolerance within its budget; "
+        f"{work / 60.0:.1f} minutes of one core."
     )
 
 
@@ -119,6 +121,7 @@ def as_json(judged: Sequence[Judged], results: Sequence[Result], about: Mapping[
                 "increments": _increments(result),
                 "converged": result.converged,
                 "seconds": round(result.seconds, 3),
+                "ended_early": result.ended,
                 "failure": result.failure,
             }
             for result in results

@@ -1,0 +1,296 @@
+"""Runs in several processes: kept, resumed, failed, interrupted; and the study as a command."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from core.errors import InputError
+from sandbox import cli
+from sandbox.studies import paper
+from sandbox.studies.paper_claims import Claim, Figure, Finding, Line, Measured, Panel
+from sandbox.studies.runs import (
+    Request,
+    Result,
+    Stopped,
+    Store,
+    execute,
+    run_all,
+)
+
+REPOSITORY = Path(__file__).parents[2]
+TINY = (("grains", 2), ("step", 0.05), ("tolerance", 1e-2))
+
+
+def tiny(packing: str, seed: int = 1) -> Request:
+    """A run of a tenth of a second."""
+    return Request("grain_row", packing, seed, TINY, probe="sideways")
+
+
+def test_execute_runs_the_whole_drive_or_part_of_it() -> None:
+    whole = execute(tiny("regular"))
+    assert whole.column("stroke")[-1] == pytest.approx(15.0)
+    assert len(whole.column("down")) == 7
+    assert whole.converged == 1.0
+    part = execute(Request("grain_row", "regular", 1, TINY, steps=2))
+    assert len(part.column("force")) == 3
+    assert part.column("force").tolist() == whole.column("force")[:3].tolist()
+
+
+def test_execute_stops_when_told() -> None:
+    with pytest.raises(Stopped):
+        execute(tiny("regular"), stopping=lambda: True)
+
+
+def test_execute_tells_of_a_run_that_ended_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    from sandbox.session import Session
+
+    def collapse(session: Session, _: int) -> bool:
+        from dataclasses import replace
+
+        session.settle()
+        if not session.run.history[-1].increment:
+            row = replace(session.run.history[-1], increment=1, stop_reason="collapsed")
+            session.run.history.append(row)
+            return True
+        session.run.follow_script(False)
+        return False
+
+    monkeypatch.setattr(Session, "advance", collapse)
+    result = execute(tiny("regular"))
+    assert result.ended == result.trouble == "a grain was squeezed flat at increment 1 of 6"
+    assert result.failure is None
+    assert len(result.column("force")) == 2
+
+
+def test_key_depends_on_everything_that_the_run_does() -> None:
+    keys = {
+        request.key()
+        for request in (
+            tiny("regular"),
+            tiny("auxetic"),
+            tiny("regular", 2),
+            Request("grain_row", "regular", 1, TINY, probe="curve"),
+            Request("grain_row", "regular", 1, TINY, steps=3, probe="sideways"),
+            Request("grain_row", "regular", 1, TINY[:2], probe="sideways"),
+        )
+    }
+    assert len(keys) == 6
+    default = Request("grain_row", "regular", 1, (("grains", 7),))
+    assert default.key() == Request("grain_row", "regular", 1).key()  # 7 is the scene's own
+    assert all(re.fullmatch(r"grain_row-[0-9a-f]{16}", key) for key in keys)
+
+
+def test_store_keeps_runs_and_tries_bad_ones_again(tmp_path: Path) -> None:
+    store, request = Store(tmp_path), tiny("regular")
+    assert store.read(request) is None
+    kept = Result(request, {"stroke": [0.0, 1.0]}, {"drop": [0.5]}, 1.0, 2.0)
+    store.write(kept)
+    assert store.read(request) == kept
+    assert store.read(tiny("auxetic")) is None
+    store.path(request).write_text("{")
+    assert store.read(request) is None
+    store.write(Result(request, failure="no"))
+    assert json.loads(store.path(request).read_text())["failure"] == "no"
+    assert store.read(request) is None
+
+
+def test_only_what_is_missing_is_run_again(tmp_path: Path) -> None:
+    """Two runs and one that fails; one file is deleted; that one and the failed one are run again."""
+    bad = Request("grain_row", "regular", 1, (("grains", 0),))
+    requests = (tiny("regular"), tiny("auxetic"), bad)
+    claim = Claim("tiny", "", "words", lambda quick: requests[:2], count)
+    broken = Claim("broken", "", "words", lambda quick: requests, count)
+    (tmp_path / "runs").mkdir()
+    outcome = paper.study(tmp_path, jobs=2, claims=(claim, broken))
+    assert (outcome.runs, outcome.failed, outcome.interrupted) == (3, 1, False)
+    verdicts = {row.claim.name: row.finding for row in outcome.judged}
+    assert verdicts["tiny"].holds is True
+    assert verdicts["broken"].holds is None
+    assert "grains" in verdicts["broken"].decided_by
+
+    store = Store(tmp_path / "runs")
+    times = {request: store.path(request).stat().st_mtime_ns for request in requests}
+    store.path(requests[1]).unlink()
+    paper.study(tmp_path, jobs=1, claims=(claim, broken))
+    again = {request: store.path(request).stat().st_mtime_ns for request in requests}
+    assert again[requests[0]] == times[requests[0]]
+    assert again[requests[1]] > times[requests[1]]
+    assert again[requests[2]] > times[requests[2]]
+
+    data = json.loads((tmp_path / "results.json").read_text())
+    assert data["runs_from_before"] == 1
+    assert [claim["verdict"] for claim in data["claims"]] == ["holds", "not measured"]
+    assert sum(run["failure"] is not None for run in data["runs"]) == 1
+    text = (tmp_path / "claims.md").read_text()
+    assert "| `tiny` () | “words” | increments 12 | **holds**: 12 |" in text
+    assert "**not measured**: 1 of 3 runs failed" in text
+
+
+def count(results: object) -> Finding:
+    """How many increments there were in all."""
+    assert isinstance(results, list)
+    total = sum(len(run.columns["stroke"]) - 1 for run in results)
+    return Finding(total == 12, f"{total}", (Measured.of("increments", "", total),))
+
+
+def test_a_process_that_dies_fails_its_run_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from sandbox.studies import runs
+
+    store = Store(tmp_path)
+    told: list[Result] = []
+    first = [True]
+    true = runs._execute
+
+    def call(pool: runs._Pool, function: object, *arguments: object) -> object:
+        if function is true and first.pop():
+            first.append(False)
+            return real(pool, os._exit, 3)
+        return real(pool, function, *arguments)  # type: ignore[arg-type]
+
+    real = runs._Pool.call
+    monkeypatch.setattr(runs._Pool, "call", call)
+    run_all([tiny("regular"), tiny("auxetic")], store, 1, told.append)
+    assert [result.failure for result in told] == [runs.LOST, None]
+
+
+# Figures.
+
+
+def test_figures_are_pictures(tmp_path: Path) -> None:
+    import imageio.v2
+    import numpy as np
+
+    from sandbox.studies.figures import draw
+
+    x = np.array([1.0, 2.0])
+    lines = (
+        Line("line", "regular", x, x),
+        Line("marks", "auxetic", x, x, 0.1 * x, points=True),
+        Line("", "mixed", x, x, dashed=True),
+    )
+    panel = Panel("title", "x [R]", "y [k R]", lines, log_x=True, log_y=True)
+    draw(Figure("f", "figure", lambda _: [panel] * 3), [], tmp_path / "f.png")
+    image = imageio.v2.imread(tmp_path / "f.png")
+    assert image.shape[0] > 900
+    assert image.shape[1] > 1200
+    colours = {tuple(map(int, pixel)) for pixel in image[..., :3].reshape(-1, 3)}
+    assert {(0x00, 0x77, 0xBB), (0xEE, 0x33, 0x77), (0x00, 0x99, 0x88)} <= colours
+    with pytest.raises(InputError, match="cannot write"):
+        draw(Figure("f", "figure", lambda _: [panel]), [], tmp_path / "none" / "f.png")
+
+
+# The command.
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["study"], "NAME"),
+        (["study", "paper"], "--out"),
+        (["study", "papers", "--out", "x"], "did you mean paper?"),
+        (
+            ["study", "paper", "--out", "x", "--only", "grain_rows"],
+            "did you mean grain_row?",
+        ),
+        (["study", "paper", "--out", "x", "--only", "zzz"], "there are poisson_ratio"),
+        (["study", "paper", "--out", "x", "--jobs", "0"], "--jobs"),
+        (["study", "paper", "--out", "x", "--fast"], "unknown option --fast"),
+        (["study", "paper", "--out", "file.txt"], "cannot write there"),
+    ],
+)
+def test_mistakes_are_one_line(
+    words: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("file.txt").write_text("mine")
+    assert cli.main(words) == 2
+    said = capsys.readouterr()
+    assert message in said.err
+    assert said.err.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["file.txt"]
+    assert Path("file.txt").read_text() == "mine"
+
+
+def test_without_matplotlib_nothing_is_begun(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert cli.main(["study", "paper", "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert "auxetic-sandbox[study]" in said
+    assert said.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def command(folder: Path, *words: str) -> list[str]:
+    return [sys.executable, "-m", "sandbox", "study", "paper", "--out", str(folder), *words]
+
+
+@pytest.mark.end_to_end
+def test_quick_study_of_one_claim(tmp_path: Path) -> None:
+    words = command(tmp_path / "out", "--quick", "--only", "grain_row", "--jobs", "1")
+    done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert re.match(r"grain_row  holds ", done.stdout)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "claims.md",
+        "fig-poisson-effect.png",
+        "results.json",
+        "runs",
+    ]
+    data = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert data["quick"] is True
+    assert data["claims"][0]["verdict"] == "holds"
+    assert data["machine"]["cores"] >= 1
+    assert data["versions"]["numba"]
+    assert all((tmp_path / "out" / run["file"]).is_file() for run in data["runs"])
+
+
+@pytest.mark.end_to_end
+@pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT as a terminal does")
+def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
+    """As in a terminal, all processes hear it; what was finished stays, and nobody is left behind."""
+    words = command(tmp_path / "out", "--only", "grain_row", "intruder_drag", "--jobs", "1")
+    process = subprocess.Popen(
+        words, cwd=REPOSITORY, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    kept = tmp_path / "out" / "runs"
+    end = time.monotonic() + 300.0
+    while not list(kept.glob("*.json")) and time.monotonic() < end:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "the same command goes on from there" in said
+    assert "Traceback" not in said
+    for path in kept.glob("*"):
+        assert json.loads(path.read_text())["failure"] is None
+    assert not (tmp_path / "out" / "results.json").exists()
+    end = time.monotonic() + 30.0
+    while alive(process.pid) and time.monotonic() < end:
+        time.sleep(0.05)  # the process that watches over shared resources ends last
+    assert not alive(process.pid)
+
+
+def alive(group: int) -> bool:
+    """Whether a process of the group is left."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    return True
