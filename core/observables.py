@@ -235,7 +235,8 @@ def grain_stress(
     p, q1, q2 = packing.state[2:]
     area = np.pi * (p * p - q1 * q1 - q2 * q2)
     total = [np.bincount(grain, part, count) for part in (work, work * c2, work * s2)]
-    return np.array(total) / np.maximum(2.0 * area, 1e-290)
+    stress: Floats = np.array(total) / np.maximum(2.0 * area, 1e-290)
+    return stress
 
 
 def pressure(tensor: Floats) -> float:

@@ -65,6 +65,11 @@ def did_you_mean(word: str, choices: Iterable[str]) -> str:
     return f" (did you mean {near}?)" if near else ""
 
 
+def any_of(choices: Sequence[str]) -> str:
+    """``a, b or c``."""
+    return " or ".join(filter(None, [", ".join(choices[:-1]), *choices[-1:]]))
+
+
 def argument(parse: Callable[[str], T]) -> Callable[[str], T]:
     """Make a function of this module fit for ``type=``, so that argparse names the option."""
 
@@ -83,7 +88,7 @@ def one_of(*choices: str) -> Callable[[str], str]:
     def parse(text: str) -> str:
         if text not in choices:
             raise InputError(
-                f"unknown value {text!r}{did_you_mean(text, choices)}: use {' or '.join(choices)}"
+                f"unknown value {text!r}{did_you_mean(text, choices)}: use {any_of(choices)}"
             )
         return text
 

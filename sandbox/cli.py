@@ -101,12 +101,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         metavar="FACTOR",
         help="size of letters and controls, 0.5 to 4 (default: by the screen's size)",
     )
-    play.add_argument(
-        "--theme",
-        type=argument(arguments.one_of("dark", "light")),
-        default="dark",
-        help="dark (default), or light for a bright room",
-    )
+    _add_look(play)
 
     record = command("record", _record, "Run a scene by itself, and write a film, a table or both.")
     record.add_argument("scene", metavar="SCENE", help="one of the names that `list` prints")
@@ -122,6 +117,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         help="increments to run, a frame each (default: the scene's whole protocol)",
     )
     _add_size(record)
+    _add_look(record)
     record.add_argument(
         "--fps",
         type=argument(arguments.number(1.0, max(arguments.HIGHEST_FPS.values()))),
@@ -134,6 +130,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
     replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_look(replay)
 
     bench = command("bench", _bench, "Measure how fast the program is on this machine.")
     bench.add_argument("--json", metavar="FILE.json", help="write all numbers down")
@@ -197,6 +194,25 @@ def _add_size(parser: Parser) -> None:
     )
 
 
+def _add_look(parser: Parser) -> None:
+    from sandbox.draw.words import VIEWS
+
+    parser.add_argument(
+        "--view",
+        type=argument(arguments.one_of(*VIEWS)),
+        default="kind",
+        metavar="NAME",
+        help=f"what the grains show: {', '.join(VIEWS)} (default: kind)",
+    )
+    parser.add_argument(
+        "--theme",
+        type=argument(arguments.one_of("dark", "light")),
+        default="dark",
+        metavar="NAME",
+        help="dark (default), or light for a bright room",
+    )
+
+
 def _meant_command(word: str, commands: dict[str, Parser]) -> str:
     """People also write the name of a scene where a command is due."""
     from scenes import registry
@@ -241,6 +257,7 @@ def _play(options: argparse.Namespace) -> int:
         size=options.size,
         scale=options.scale,
         theme=options.theme,
+        view=options.view,
     )
 
 
@@ -342,7 +359,9 @@ def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> O
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])
     arguments.check_different({"--out": film, "--data": table})
-    return Output(film, table, size, fps) if film or table else None
+    if not (film or table):
+        return None
+    return Output(film, table, size, fps, options.view, options.theme)
 
 
 def _session(options: argparse.Namespace) -> Session:

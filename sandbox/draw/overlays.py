@@ -20,6 +20,7 @@ from sandbox.frame import Frame, HandleState
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
+CHAIN_RIM = 1.2  # round plain chains at scale 1 [px]
 FADE_FROM, FADE_TO = 0.3, 1.0  # of the mean force: where chains begin to show, and show fully
 FAINT_FROM, FAINT_TO = 0.004, 0.06  # and the same of the scale's top
 KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
@@ -27,9 +28,17 @@ ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px
 
 
 def draw_chains(
-    painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame, top: float
+    painter: Painter,
+    rect: pygame.Rect,
+    camera: Camera,
+    frame: Frame,
+    top: float,
+    plain: bool = False,
 ) -> None:
-    """A line along every contact: width by the root of the force, colour by the force."""
+    """A line along every contact: width by the root of the force, colour by the force.
+
+    ``plain``: the colour says something else in this view, so the lines have that of the text.
+    """
     contacts = frame.contacts
     force = floats(contacts.force)
     carrying = force[np.isfinite(force) & (force > 0.0)]
@@ -53,13 +62,17 @@ def draw_chains(
         y0, y1 = y0[index] + move_y, y1[index] + move_y
         order = order[index]
     widest = 0.5 * min(CHAIN_WIDTH * camera.scale, CHAIN_MOST * painter.scale)
-    raster.draw_lines(
-        painter.canvas(cell_rect(rect, camera, frame.box), camera.transform),
-        (x0, y0, x1, y1),
-        widest * np.sqrt(share[order]),
-        magnitude_colours(painter.theme, share[order]),
-        alpha[order],
-    )
+    canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
+    width = widest * np.sqrt(share[order])
+    theme = painter.theme
+    if plain:  # a rim of ground colour sets them off from grains of any colour
+        ground = np.full(order.size, theme.ground, dtype=np.uint32)
+        rim = width + CHAIN_RIM * painter.scale
+        raster.draw_lines(canvas, (x0, y0, x1, y1), rim, ground, alpha[order])
+        colours = np.full(order.size, theme.text, dtype=np.uint32)
+    else:
+        colours = magnitude_colours(theme, share[order])
+    raster.draw_lines(canvas, (x0, y0, x1, y1), width, colours, alpha[order])
 
 
 def mark_scale(painter: Painter, rect: pygame.Rect) -> float:

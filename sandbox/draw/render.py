@@ -11,15 +11,17 @@ from numpy.typing import NDArray
 
 from sandbox.draw.camera import Camera
 from sandbox.draw.layout import Layout, layout
+from sandbox.draw.legend import draw_header
 from sandbox.draw.numbers import RoundScale, typical_largest
 from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
 from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Curve, draw_plot
-from sandbox.draw.status import draw_header, draw_status
+from sandbox.draw.status import draw_status
 from sandbox.draw.text import BODY, Type
 from sandbox.draw.theme import channels, packing_colour, theme_named
-from sandbox.draw.world import draw_bodies, draw_grains
+from sandbox.draw.views import VIEWS, view_named
+from sandbox.draw.world import Look, draw_bodies, draw_grains
 from sandbox.frame import Frame
 
 LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
@@ -29,7 +31,7 @@ MARGIN = 14.0  # round the scene at scale 1 [px]
 class Renderer:
     """Draws Frames of one run into one surface. Needs no display.
 
-    It remembers the tops of the two force scales only, so that they don't jump from picture to
+    It remembers the tops of its scales only, so that they don't jump from picture to
     picture; call :meth:`forget` when another run begins.
     """
 
@@ -38,16 +40,19 @@ class Renderer:
         size: tuple[int, int] = (1280, 720),
         scale: float = 1.0,
         theme: str = "dark",
-        chains: bool = True,
+        view: str = "kind",
+        chains: bool | None = None,
     ) -> None:
-        self.chains = chains
+        """``chains`` None: as suits the view."""
+        self.set_view(view)
+        if chains is not None:
+            self.chains = chains
         self.theme = theme_named(theme)
         self.type = Type(scale)
         self.surface = pygame.Surface(size, 0, 32)
         self.layout: Layout = layout(size, scale)
         self.camera = Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0)
-        self._chain_scale = RoundScale(LEAST_CHAIN)
-        self._hand_scale = RoundScale(LEAST_PUSH)
+        self.forget()
 
     @property
     def size(self) -> tuple[int, int]:
@@ -71,10 +76,16 @@ class Renderer:
         """Dark or light."""
         self.theme = theme_named(name)
 
+    def set_view(self, name: str) -> None:
+        """One of the views, with force chains or without, as suits it. Raises InputError."""
+        self.view = view_named(name)
+        self.chains = self.view.chains
+
     def forget(self) -> None:
-        """Start the force scales afresh."""
+        """Start the scales afresh."""
         self._chain_scale = RoundScale(LEAST_CHAIN)
         self._hand_scale = RoundScale(LEAST_PUSH)
+        self._view_scales = {name: RoundScale(view.least) for name, view in VIEWS.items()}
 
     def clear(self) -> None:
         """Nothing but the ground."""
@@ -102,23 +113,36 @@ class Renderer:
         places = self.layout
         self.camera = Camera.fit(frame.bounds, places.canvas, MARGIN * self.scale)
         painter.fill(places.canvas, self.theme.ground)
-        draw_grains(painter, places.canvas, self.camera, frame, faded=self.chains)
+        look = self._look(frame)
+        draw_grains(painter, places.canvas, self.camera, frame, look)
         draw_bodies(painter, places.canvas, self.camera, frame)
         chain_top = None
-        if self.chains:
+        if look.chains:
             chain_top = self._chain_scale.follow(typical_largest(frame.contacts.force))
-            draw_chains(painter, places.canvas, self.camera, frame, chain_top)
+            plain = look.values is not None
+            draw_chains(painter, places.canvas, self.camera, frame, chain_top, plain)
         draw_cell(painter, places.canvas, self.camera, frame)
         forces = [math.hypot(handle.fx, handle.fy) for handle in frame.handles]
         hand_top = self._hand_scale.follow(max(forces, default=0.0))
         draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)
-        draw_header(painter, places.header, frame, chain_top)
+        draw_header(painter, places.header, frame, look, chain_top)
         curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
         draw_plot(painter, places.plot, [curve], frame.curve_label, frame.stroke_label)
         draw_status(painter, places.status, frame, rate=rate, paused=paused)
         self._draw_notices(painter, (*frame.notices, *notices))
         painter.flush()
         return self.surface
+
+    def _look(self, frame: Frame) -> Look:
+        """What the view makes of a frame."""
+        view = self.view
+        chains = self.chains or view.only_chains
+        if view.measure is None:
+            return Look(view, chains)
+        values = view.measure(frame)
+        return Look(
+            view, chains, values, self._view_scales[view.name].follow(typical_largest(values))
+        )
 
     def _draw_notices(self, painter: Painter, notices: tuple[str, ...]) -> None:
         """Plain words on plates at the foot of the canvas, the newest lowest."""

@@ -1,18 +1,17 @@
-"""The status line (what is shown, and whether to believe it) and the header with the legend."""
+"""The status line: what is shown, and whether to believe it."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
-import numpy as np
 import pygame
 
-from sandbox.draw import raster, words
-from sandbox.draw.numbers import decimals_for, number, percent
+from sandbox.draw import words
+from sandbox.draw.numbers import percent
 from sandbox.draw.painter import Painter
-from sandbox.draw.text import BODY, HEADING, SMALL
-from sandbox.draw.theme import AUXETIC, REGULAR, Theme, magnitude_colours, mix
+from sandbox.draw.text import BODY
+from sandbox.draw.theme import Theme, mix
 from sandbox.frame import CONVERGED, Frame
 
 
@@ -121,96 +120,3 @@ def draw_status(
     painter.text(state.words if whole else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
         painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
-
-
-def draw_header(painter: Painter, rect: pygame.Rect, frame: Frame, chain_top: float | None) -> None:
-    """Title at the left; at the right the kinds of grains and, with chains, the force scale."""
-    if rect.height <= 0:
-        return
-    scale, theme, type_ = painter.scale, painter.theme, painter.type
-    painter.fill(rect, theme.panel)
-    thin = max(round(scale), 1)
-    painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
-    pad, gap = round(14 * scale), round(26 * scale)
-    left, right = rect.left + pad, rect.right - pad
-    auxetic = int(np.count_nonzero(frame.auxetic))
-    kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]
-    present = [kind for kind, count in kinds if count]
-    title = type_.width(frame.title, HEADING, bold=True) + gap
-    bar = 0 if chain_top is None else _scale_bar_width(painter, chain_top) + gap
-    long = _legend_width(painter, present, words.KINDS)
-    short = _legend_width(painter, present, words.KINDS_SHORT)
-
-    # What fits: whole title, legend in words, scale bar; then less of each.
-    room = right - left
-    names, with_bar = words.KINDS_SHORT, False
-    if title + long + bar <= room:
-        names, with_bar = words.KINDS, bar > 0
-    elif title + short + bar <= room:
-        with_bar = bar > 0
-    elif title + long <= room:
-        names = words.KINDS
-    if with_bar and chain_top is not None:
-        _draw_scale_bar(painter, right - bar + gap, rect.centery, chain_top)
-        right -= bar
-    width = _legend_width(painter, present, names)
-    if width <= right - left:
-        right -= width
-        _draw_legend(painter, right, rect.centery, [(kind, names[kind]) for kind in present])
-        right -= gap
-    title_text = type_.shortened(frame.title, HEADING, right - left, bold=True)
-    painter.text(title_text, left, rect.centery, size=HEADING, bold=True)
-
-
-def _legend_width(painter: Painter, kinds: list[str], names: dict[str, str]) -> int:
-    symbol, gap = round(27 * painter.scale), round(19 * painter.scale)
-    return sum(painter.type.width(names[kind], BODY) + symbol + gap for kind in kinds) - gap
-
-
-def _draw_legend(painter: Painter, x: float, y: float, kinds: list[tuple[str, str]]) -> None:
-    """Grains as on the canvas, each with its name."""
-    scale = painter.scale
-    radius = 10.0 * scale
-    for kind, name in kinds:
-        colour = AUXETIC if kind == "auxetic" else REGULAR
-        rim = mix(colour, 0x000000, 0.38)
-        painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
-        if kind == "auxetic":
-            zero, one = np.zeros(1), np.ones(1)
-            grain = ((x + radius) * one, -y * one, radius * one, zero, zero)
-            marked = np.ones(1, dtype=np.bool_)
-            ground = painter.theme.ground
-            raster.draw_bow_ties(painter.canvas(), grain, zero, one, marked, ground, 1.0)
-        painter.text(name, x + 2 * radius + 7 * scale, y)
-        x += painter.type.width(name, BODY) + round(27 * scale) + round(19 * scale)
-
-
-def _scale_bar_parts(top: float) -> tuple[str, str, str]:
-    return words.CHAINS, "0", f"{number(top, decimals_for(0.1 * top))} {words.FORCE_UNIT}"
-
-
-def _scale_bar_width(painter: Painter, top: float) -> int:
-    texts = sum(painter.type.width(text, SMALL) for text in _scale_bar_parts(top))
-    return texts + round((110 + 10 + 7 + 7) * painter.scale)
-
-
-def _draw_scale_bar(painter: Painter, x: float, y: float, top: float) -> None:
-    """A wedge: width and colour of the chains from no force to the top of the scale."""
-    scale, theme, type_ = painter.scale, painter.theme, painter.type
-    name, low, high = _scale_bar_parts(top)
-    painter.text(name, x, y, size=SMALL, colour=theme.soft_text)
-    x += type_.width(name, SMALL) + 10 * scale
-    painter.text(low, x, y, size=SMALL, colour=theme.soft_text)
-    x += type_.width(low, SMALL) + 7 * scale
-    length = round(110 * scale)
-    places = x + np.arange(length) + 0.5
-    share = (np.arange(length) + 0.5) / length
-    half_height = 7.0 * scale * np.sqrt(share)
-    raster.draw_lines(
-        painter.canvas(),
-        (places, -y - half_height, places, -y + half_height),
-        np.full(length, 0.5),
-        magnitude_colours(theme, share),
-        np.ones(length),
-    )
-    painter.text(high, x + length + 7 * scale, y, size=SMALL, colour=theme.soft_text)

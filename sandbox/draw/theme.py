@@ -148,9 +148,14 @@ def _cividis_table() -> Colours:
 CIVIDIS: Colours = _cividis_table()
 
 
-def magnitude_colours(theme: Theme, share: NDArray[np.float64]) -> Colours:
-    """Colours of magnitudes given as shares 0..1 of the scale's top; (N,) -> uint32 (N,)."""
-    start, end = theme.ramp
+def magnitude_colours(
+    theme: Theme, share: NDArray[np.float64], ramp: tuple[float, float] | None = None
+) -> Colours:
+    """Colours of magnitudes given as shares 0..1 of the scale's top; (N,) -> uint32 (N,).
+
+    ``ramp``: the part of cividis, from no force to the top; without it the theme's.
+    """
+    start, end = theme.ramp if ramp is None else ramp
     bounded = np.clip(np.nan_to_num(share, nan=0.0), 0.0, 1.0)
     colours: Colours = CIVIDIS[np.rint(255.0 * (start + (end - start) * bounded)).astype(np.intp)]
     return colours

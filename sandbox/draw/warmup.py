@@ -19,6 +19,8 @@ def compile_kernels() -> None:
     raster.draw_ellipses(canvas, grains, colour, colour, 1.0, 1.0)
     marked = np.ones(1, dtype=np.bool_)
     raster.draw_bow_ties(canvas, grains, 0.0 * one, one, marked, 1, 1.0)
+    colours = (colour, colour)
+    raster.draw_made_grains(canvas, grains, one, 0.0 * one, one, marked, colours, 1.0, 1.0)
     raster.draw_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one)
     raster.draw_hull(canvas, np.zeros((1, 2)), 1.0, 1, 1, 0.0, 1.0)
     raster.draw_ring(canvas, 4.0, -4.0, 2.0, 1.0, 1, 1.0)

@@ -5,6 +5,20 @@ from __future__ import annotations
 KINDS = {"regular": "regular: bulges", "auxetic": "auxetic: shrinks"}
 KINDS_SHORT = {"regular": "regular", "auxetic": "auxetic"}
 
+# Ways to look at the grains: the names for the command line, and what the legend says.
+VIEWS = {
+    "kind": "kinds",
+    "skin": "as made",
+    "pressure": "pressure",
+    "shape": "shape change (a − b)/(a + b)",
+    "area": "area lost",
+    "motion": "motion against the mean",
+    "chains": "force chains",
+    "fringes": "stress fringes",
+}
+
+VIEW = "view: {view}"
+
 SETTLED = "settled"
 SETTLING = "settling"
 STOPPED = {
@@ -15,7 +29,7 @@ STOPPED = {
     "collapsed": "a grain was crushed flat: press R to reset",
 }
 BROKEN = frozenset({"not finite", "collapsed"})
-FORCE_ERROR = "forces within {error}"
+FORCE_ERROR = "forces balance within {error}"
 NO_FORCES = "no forces"
 UNKNOWN_FORCES = "forces not known yet"
 
@@ -31,6 +45,9 @@ GRAINS_OUT = "{count} out"
 
 CHAINS = "force chains"
 FORCE_UNIT = "k R"
+STRESS_UNIT = "k"
+LENGTH_UNIT = "R"
+PERCENT = "%"
 STROKE_AXIS = "stroke [R]"
 NO_CURVE = "nothing has moved yet"
 
@@ -58,6 +75,7 @@ HELP = (
     ("P", "next packing"),
     ("N", "new seed"),
     ("A", "scripted drive"),
+    ("V", "next view"),
     ("F", "force chains"),
     ("M, Tab", "scene menu"),
     ("T", "dark or light"),
@@ -71,6 +89,7 @@ SAVED = "saved {name}"
 NOT_SAVED = "could not save {name}: {reason}"
 NEW_SEED = "new seed: {seed}"
 NEW_PACKING = "{packing} grains"
+ONLY_CHAINS = "this view is the force chains"
 CHAINS_ON = "force chains on"
 CHAINS_OFF = "force chains off"
 DRIVE_ON = "scripted drive on"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pygame
 from numpy.typing import NDArray
@@ -11,6 +13,7 @@ from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
+from sandbox.draw.views import KIND, View
 from sandbox.frame import BodyShape, Frame
 
 Floats = NDArray[np.float64]
@@ -19,7 +22,20 @@ OUTLINE = 1.5  # width on screen at scale 1 [px]
 FADED = 0.35  # how far grains recede into the ground when force chains are shown
 LARGE = 20.0  # reference radius on screen from which grains recede less [px]
 CLOSED_AREA = 0.60  # the mark has closed when a grain has shrunk to this share of its area
+SHADOW = 0.85  # how far they recede where the chains are all that is shown
+TOOTH_FROM = 9.0  # below this radius on screen a made grain has no tooth [px]
+GOLDEN = 0.6180339887498949  # multiples of it, whole parts left out, never repeat and never cluster
 SPIN_FROM = 11.0  # below this mean radius on screen a radius line would only be noise [px]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How the grains are shown: the view, its values (N,) and the top of their scale, if any."""
+
+    view: View = KIND
+    chains: bool = False  # are force chains drawn over the grains?
+    values: Floats | None = None
+    top: float = 1.0
 
 
 def mark_openness(p: Floats, q1: Floats, q2: Floats, rest_radius: Floats) -> Floats:
@@ -42,35 +58,86 @@ def grain_colours(theme: Theme, recede: float) -> tuple[int, int, int, int]:
 
 
 def draw_grains(
-    painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame, faded: bool
+    painter: Painter,
+    rect: pygame.Rect,
+    camera: Camera,
+    frame: Frame,
+    look: Look,
 ) -> None:
-    """All grains by kind, auxetic ones with their mark, and those pointed at with a bright rim."""
+    """All grains, auxetic ones with their mark, and those pointed at with a bright rim."""
     index, x, y = _places(frame)
     if not index.size:
         return
     canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
-    p, q1, q2 = (floats(part[index]) for part in (frame.p, frame.q1, frame.q2))
+    p, q1, q2, rest = (
+        floats(part[index]) for part in (frame.p, frame.q1, frame.q2, frame.rest_radius)
+    )
     grains = (x, y, p, q1, q2)
     auxetic = frame.auxetic[index]
-    # Chains lie beside much of a large grain, but over most of a small one.
-    recede = FADED * min(LARGE / camera.scale, 1.0) if faded else 0.0
-    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(painter.theme, recede)
-    fill = np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill))
-    rim = np.where(auxetic, np.uint32(auxetic_rim), np.uint32(regular_rim))
+    fill, rim = (part[index] for part in _colours(painter.theme, camera, frame, look))
     width = outline_width(painter, camera)
-    raster.draw_ellipses(canvas, grains, fill, rim, width, 1.0)
-    if frame.highlight is not None:
-        some = np.flatnonzero(frame.highlight[index])
-        ringed = tuple(part[some] for part in grains)
-        bright = np.full(some.size, EVENT, dtype=np.uint32)
-        raster.draw_ellipses(canvas, ringed, fill[some], bright, 2.2 * width, 1.0)
     turn = np.zeros(index.size) if frame.spin is None else floats(frame.spin[index])
-    if bool(auxetic.any()):
-        openness = mark_openness(p, q1, q2, frame.rest_radius[index])
+    openness = mark_openness(p, q1, q2, rest)
+    made = look.view.made
+
+    def draw(some: NDArray[np.intp] | slice, edge: NDArray[np.uint32], edge_width: float) -> None:
+        x, y, p, q1, q2 = (part[some] for part in grains)
+        chosen = (x, y, p, q1, q2)
+        if made:
+            raster.draw_made_grains(
+                canvas,
+                chosen,
+                rest[some],
+                (turn + made_angle(frame.label[index]))[some],
+                openness[some],
+                auxetic[some],
+                (fill[some], edge),
+                edge_width,
+                TOOTH_FROM * painter.scale,
+            )
+        else:
+            raster.draw_ellipses(canvas, chosen, fill[some], edge, edge_width, 1.0)
+
+    draw(slice(None), rim, 0.5 * width if made else width)
+    if frame.highlight is not None:
+        pointed_at = np.flatnonzero(frame.highlight[index])
+        draw(pointed_at, np.full(pointed_at.size, EVENT, dtype=np.uint32), 2.2 * width)
+    if not made and bool(auxetic.any()):
         ground = painter.theme.ground
         raster.draw_bow_ties(canvas, grains, turn, openness, auxetic, ground, 1.0)
     if frame.spin is not None:
-        _draw_radius_lines(painter, canvas, grains, auxetic, turn, rim)
+        inner = 1.0 - 0.8 * raster.WALL
+        start: Floats = np.full(index.size, inner) if made else np.where(auxetic, 0.55, 0.0)
+        # The hole of an auxetic grain turns with it.
+        visible = ~auxetic if made else np.ones(index.size, dtype=np.bool_)
+        _draw_radius_lines(painter, canvas, grains, start, visible, turn, rim)
+
+
+def _colours(
+    theme: Theme, camera: Camera, frame: Frame, look: Look
+) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """Fill and rim of every grain, uint32 (N,)."""
+    if look.values is not None:
+        fill = look.view.colours(theme, look.values, look.top)
+        return fill, np.full(frame.grains, mix(theme.hairline, theme.text, 0.25), dtype=np.uint32)
+    recede = 0.0
+    if look.view.only_chains:
+        recede = SHADOW
+    elif look.chains:
+        # Chains lie beside much of a large grain, but over most of a small one.
+        recede = FADED * min(LARGE / camera.scale, 1.0)
+    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(theme, recede)
+    auxetic = frame.auxetic
+    return (
+        np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill)),
+        np.where(auxetic, np.uint32(auxetic_rim), np.uint32(regular_rim)),
+    )
+
+
+def made_angle(label: NDArray[np.int64]) -> Floats:
+    """The direction in which each made grain lies: fixed by its label, and without an order [rad]."""
+    angle: Floats = 2.0 * np.pi * np.modf(GOLDEN * label)[0]
+    return angle
 
 
 def _places(frame: Frame) -> tuple[NDArray[np.intp], Floats, Floats]:
@@ -87,16 +154,16 @@ def _draw_radius_lines(
     painter: Painter,
     canvas: raster.Canvas,
     grains: raster.Grains,
-    auxetic: NDArray[np.bool_],
+    start: Floats,
+    visible: NDArray[np.bool_],
     turn: Floats,
     colour: NDArray[np.uint32],
 ) -> None:
-    """One radius a grain, turned with it; on auxetic grains only the part beside the mark."""
+    """One radius a grain, turned with it; from ``start`` radii, beside the mark, outwards."""
     x, y, p, q1, q2 = grains
     cosine, sine = np.cos(turn), np.sin(turn)
     outward_x = (p + q1) * cosine + q2 * sine
     outward_y = q2 * cosine + (p - q1) * sine
-    start = np.where(auxetic, 0.55, 0.0)
     ends = (
         x + start * outward_x,
         y + start * outward_y,
@@ -104,7 +171,8 @@ def _draw_radius_lines(
         y + 0.9 * outward_y,
     )
     radius = canvas[2][0] * p
-    shown = np.where(radius >= SPIN_FROM * 0.5, np.clip(radius / SPIN_FROM, 0.0, 1.0), 0.0)
+    large = visible & (radius >= SPIN_FROM * 0.5)
+    shown = np.where(large, np.clip(radius / SPIN_FROM, 0.0, 1.0), 0.0)
     raster.draw_lines(canvas, ends, np.full(x.size, 0.8 * painter.scale), colour, shown)
 
 

@@ -29,6 +29,8 @@ class Output:
     table: Path | None
     size: tuple[int, int] = (1280, 720)
     fps: float = 30.0
+    view: str = "kind"
+    theme: str = "dark"
 
 
 @dataclass(frozen=True)
@@ -137,7 +139,7 @@ def _drawer(output: Output) -> Callable[[Any], Any]:
 
     # Letters and lines keep their share of the picture whatever its size.
     scale = max(0.5, min(output.size[0] / 1280, output.size[1] / 720))
-    return Renderer(size=output.size, scale=scale).image
+    return Renderer(output.size, scale, output.theme, output.view).image
 
 
 def _bar_options() -> dict[str, Any]:

@@ -17,6 +17,7 @@ from sandbox.draw import words
 from sandbox.draw.cards import MenuEntry, draw_error, draw_help
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
+from sandbox.draw.views import view_after
 from sandbox.draw.warmup import Warmup
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
@@ -43,6 +44,7 @@ def run(
     size: tuple[int, int] = (1280, 720),
     scale: float | None = None,
     theme: str = "dark",
+    view: str = "kind",
 ) -> int:
     """Open the window and stay until it is closed. Without a scene it starts with the menu.
 
@@ -50,7 +52,7 @@ def run(
     written at the end. Raises InputError without a display and for what does not exist.
     """
     sys.setswitchinterval(SWITCH)
-    app = App(Run(packing, seed), size=size, scale=scale, theme=theme)
+    app = App(Run(packing, seed), size=size, scale=scale, theme=theme, view=view)
     try:
         if scene is None:
             app.open_menu()
@@ -81,6 +83,7 @@ class App:
         size: tuple[int, int] = (1280, 720),
         scale: float | None = None,
         theme: str = "dark",
+        view: str = "kind",
     ) -> None:
         self.run = run
         self.running = True
@@ -88,7 +91,7 @@ class App:
         self.show_help = False
         self.mouse = Mouse()
         self.screen = open_display(size)
-        self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme)
+        self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
         scenes = [registry.get(name) for name in registry.names()]
         entries = [MenuEntry(s.name, s.title, s.question, s.about) for s in scenes]
         packings = dict.fromkeys(packing for s in scenes for packing in s.packings)
@@ -310,9 +313,11 @@ class App:
         elif action is Action.RESET:
             self.mouse.forget()
             self.run.reset()
+        elif action is Action.NEXT_VIEW:
+            self.renderer.set_view(view_after(self.renderer.view).name)
+            self.toast(words.VIEW.format(view=self.renderer.view.title))
         elif action is Action.CHAINS:
-            self.renderer.chains = not self.renderer.chains
-            self.toast(words.CHAINS_ON if self.renderer.chains else words.CHAINS_OFF)
+            self._switch_chains()
         elif action is Action.PROTOCOL and frame is not None:
             self.mouse.release(self.send)
             self._hinted = True
@@ -326,6 +331,13 @@ class App:
             self._forget_picture()
             self.run.change_packing(str(packing))
             self.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(str(packing), packing)))
+
+    def _switch_chains(self) -> None:
+        if self.renderer.view.only_chains:
+            self.toast(words.ONLY_CHAINS)
+            return
+        self.renderer.chains = not self.renderer.chains
+        self.toast(words.CHAINS_ON if self.renderer.chains else words.CHAINS_OFF)
 
     def _packing(self, action: Action) -> str | None:
         return packing_for(action, self.menu.packings, self.run.packing)

@@ -21,6 +21,7 @@ class Action(enum.Enum):
     NEW_SEED = enum.auto()
     MENU = enum.auto()
     PROTOCOL = enum.auto()
+    NEXT_VIEW = enum.auto()
     CHAINS = enum.auto()
     HELP = enum.auto()
     THEME = enum.auto()
@@ -48,6 +49,7 @@ _SIGNS = {
     "n": Action.NEW_SEED,
     "m": Action.MENU,
     "a": Action.PROTOCOL,
+    "v": Action.NEXT_VIEW,
     "f": Action.CHAINS,
     "h": Action.HELP,
     "?": Action.HELP,

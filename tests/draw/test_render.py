@@ -175,7 +175,7 @@ def test_lamp_says_what_can_be_believed(
 
 def test_lamp_bounds_the_force_error() -> None:
     frame = intruder_frame(6)
-    assert lamp(replace(frame, residual=0.0082), DARK).error == "forces within 1 %"
+    assert lamp(replace(frame, residual=0.0082), DARK).error == "forces balance within 1 %"
     assert lamp(replace(frame, residual=3.0), DARK).error == words.UNKNOWN_FORCES
     assert lamp(replace(frame, residual=float("nan")), DARK).error == words.NO_FORCES
 

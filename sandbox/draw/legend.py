@@ -1,0 +1,181 @@
+"""The header: the scene's title, and what the colours and widths on the canvas mean."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+from numpy.typing import NDArray
+
+from sandbox.draw import raster, words
+from sandbox.draw.numbers import decimals_for, number
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import BODY, HEADING, SMALL
+from sandbox.draw.theme import AUXETIC, REGULAR, magnitude_colours, mix
+from sandbox.draw.world import Look
+from sandbox.frame import Frame
+
+Floats = NDArray[np.float64]
+
+BAR, SHORT_BAR = 110.0, 60.0  # length of a scale bar at scale 1 [px]
+BAR_HEIGHT = 14.0
+SYMBOL = 10.0  # radius of the grains in the legend at scale 1 [px]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One part of the legend: how wide it is [px], and how to draw it from a left end at a height."""
+
+    width: float
+    draw: Callable[[float, float], None]
+
+
+def draw_header(
+    painter: Painter, rect: pygame.Rect, frame: Frame, look: Look, chain_top: float | None
+) -> None:
+    """Title at the left; at the right the kinds of grains, the force scale and that of the view."""
+    if rect.height <= 0:
+        return
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    painter.fill(rect, theme.panel)
+    thin = max(round(scale), 1)
+    painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
+    pad, gap = round(14 * scale), round(26 * scale)
+    left, right = rect.left + pad, rect.right - pad
+    title = type_.width(frame.title, HEADING, bold=True)
+
+    choices = _choices(painter, frame, look, chain_top)
+    widths = [sum(part.width + gap for part in parts) for parts in choices]
+    room = right - left
+    fitting = [k for k, width in enumerate(widths) if title + width <= room]
+    # Where nothing fits beside the whole title, the title gives way to the least that says enough.
+    fitting += [k for k, width in enumerate(widths) if width <= room][-1:]
+    x = float(right)
+    if fitting:
+        for part in reversed(choices[fitting[0]]):
+            x -= part.width
+            part.draw(x, rect.centery)
+            x -= gap
+    shown = type_.shortened(frame.title, HEADING, x - left, bold=True)
+    painter.text(shown, left, rect.centery, size=HEADING, bold=True)
+
+
+def _choices(
+    painter: Painter, frame: Frame, look: Look, chain_top: float | None
+) -> list[list[Part]]:
+    """What to show from left to right, best first; the last is the least that says enough."""
+    long, short = (
+        _kinds(painter, frame, look, names) for names in (words.KINDS, words.KINDS_SHORT)
+    )
+    name = _name(painter, words.VIEW.format(view=look.view.title))
+    chains = [] if chain_top is None else [_chains(painter, look, chain_top, BAR)]
+    if look.values is not None:
+        bar, least = (_measure(painter, look, length) for length in (BAR, SHORT_BAR))
+        return [[*short, *chains, bar], [*short, bar], [*chains, bar], [bar], [least], [name]]
+    if look.view.only_chains and chain_top is not None:
+        least = _chains(painter, look, chain_top, SHORT_BAR)
+        return [[*long, *chains], [*short, *chains], chains, [least], [name]]
+    full = [[*long, *chains, name], [*short, *chains, name], [*short, *chains]]
+    return [*full, [*long, name], [*short, name], short]
+
+
+def _name(painter: Painter, text: str) -> Part:
+    """The view's name where there is no scale to carry it."""
+
+    def draw(x: float, y: float) -> None:
+        painter.text(text, x, y, size=SMALL, colour=painter.theme.soft_text)
+
+    return Part(painter.type.width(text, SMALL), draw)
+
+
+def _kinds(painter: Painter, frame: Frame, look: Look, names: dict[str, str]) -> list[Part]:
+    """Grains as on the canvas, each with its name."""
+    auxetic = int(np.count_nonzero(frame.auxetic))
+    kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]
+    return [_kind(painter, look, kind, names[kind]) for kind, count in kinds if count]
+
+
+def _kind(painter: Painter, look: Look, kind: str, name: str) -> Part:
+    scale, theme = painter.scale, painter.theme
+    radius, gap = SYMBOL * scale, 7.0 * scale
+
+    def draw(x: float, y: float) -> None:
+        colour = AUXETIC if kind == "auxetic" else REGULAR
+        if look.values is not None:  # the view's colours mean something else
+            colour = theme.soft_text
+        rim = mix(colour, 0x000000, 0.38)
+        zero, one = np.zeros(1), np.ones(1)
+        marked = np.full(1, kind == "auxetic")
+        grain = ((x + radius) * one, -y * one, radius * one, zero, zero)
+        if look.view.made:
+            painted = (np.full(1, colour, dtype=np.uint32), np.full(1, rim, dtype=np.uint32))
+            raster.draw_made_grains(
+                painter.canvas(), grain, radius * one, zero, one, marked, painted, scale, 0.0
+            )
+        else:
+            painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)
+            raster.draw_bow_ties(painter.canvas(), grain, zero, one, marked, theme.panel, 1.0)
+        painter.text(name, x + 2.0 * radius + gap, y)
+
+    return Part(2.0 * radius + gap + painter.type.width(name, BODY), draw)
+
+
+def _chains(painter: Painter, look: Look, top: float, length: float) -> Part:
+    """A wedge: width and colour of the chains from no force to the top of the scale."""
+    theme = painter.theme
+    plain = look.values is not None
+
+    def colours(share: Floats) -> NDArray[np.uint32]:
+        if plain:
+            return np.full(share.size, theme.text, dtype=np.uint32)
+        return magnitude_colours(theme, share)
+
+    return _bar(painter, words.CHAINS, top, words.FORCE_UNIT, length, colours, wedge=True)
+
+
+def _measure(painter: Painter, look: Look, length: float) -> Part:
+    """Colours of the view from nothing to the top of its scale."""
+
+    def colours(share: Floats) -> NDArray[np.uint32]:
+        return look.view.colours(painter.theme, share, 1.0)
+
+    return _bar(painter, look.view.title, look.top, look.view.unit, length, colours, wedge=False)
+
+
+def _bar(
+    painter: Painter,
+    name: str,
+    top: float,
+    unit: str,
+    length: float,
+    colours: Callable[[Floats], NDArray[np.uint32]],
+    *,
+    wedge: bool,
+) -> Part:
+    """A scale bar: its name, 0, the colours, and the top with its unit."""
+    scale, type_, soft = painter.scale, painter.type, painter.theme.soft_text
+    high = f"{number(top, decimals_for(0.1 * top))} {unit}".rstrip()
+    pixels = round(length * scale)
+    wide, narrow = 10.0 * scale, 7.0 * scale
+
+    def draw(x: float, y: float) -> None:
+        painter.text(name, x, y, size=SMALL, colour=soft)
+        x += type_.width(name, SMALL) + wide
+        painter.text("0", x, y, size=SMALL, colour=soft)
+        x += type_.width("0", SMALL) + narrow
+        share = (np.arange(pixels) + 0.5) / pixels
+        places = round(x) + np.arange(pixels) + 0.5
+        half = 0.5 * BAR_HEIGHT * scale * (np.sqrt(share) if wedge else np.ones(pixels))
+        raster.draw_lines(
+            painter.canvas(),
+            (places, -y - half, places, -y + half),
+            np.full(pixels, 0.5),
+            colours(share),
+            np.ones(pixels),
+        )
+        painter.text(high, x + pixels + narrow, y, size=SMALL, colour=soft)
+
+    texts = sum(type_.width(text, SMALL) for text in (name, "0", high))
+    return Part(texts + pixels + wide + 2.0 * narrow, draw)
