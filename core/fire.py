@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.contacts import add_contact_forces, grain_overlap, prepare
-from core.elasticity import finish
+from core.elasticity import add_guard, finish
 from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
@@ -90,7 +90,9 @@ class Weight(NamedTuple):
     x: float  # gravity [k/R]
     y: float
     drag: float  # [k/R²] against the way from ``start``: how fast grains fall that nothing holds
-    start: NDArray[np.float64]  # (2, N) centres when the relaxation began, in the packing's order [R]
+    start: NDArray[
+        np.float64
+    ]  # (2, N) centres when the relaxation began, in the packing's order [R]
 
 
 class Limits(NamedTuple):
@@ -260,18 +262,13 @@ def evaluate(m, box, rigid, friction, gravity):
         force[5] = 0.0
         energy += add_friction_forces(state, force, friction)
     grains = m.grains
-    energy += finish(
-        state[2],
-        state[3],
-        state[4],
-        grains.rest_area,
-        grains.area_stiffness,
-        grains.shape_stiffness,
-        force[2],
-        force[3],
-        force[4],
+    p, q1, q2, fp, fq1, fq2 = state[2], state[3], state[4], force[2], force[3], force[4]
+    own, small = finish(
+        p, q1, q2, grains.rest_area, grains.area_stiffness, grains.shape_stiffness, fp, fq1, fq2
     )
-    return energy
+    if small > 0.0:
+        own += add_guard(p, q1, q2, grains.rest_area, fp, fq1, fq2)
+    return energy + own
 
 
 @kernel

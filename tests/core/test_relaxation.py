@@ -130,12 +130,15 @@ def test_collapsed_from_the_start() -> None:
     assert Relaxation(packing).run(1000).reason is StopReason.COLLAPSED
 
 
-def test_collapsed_under_pressure() -> None:
-    """Twenty times as much grain as room: some grain gives way, and that is said."""
+def test_crushed_but_whole() -> None:
+    """Twenty times as much grain as room: the guard of the area lets no grain vanish, however bad the start."""
     random = np.random.default_rng(1)
     x, y = random.uniform(0.0, 7.0, (2, 300))
     packing = Packing(x, y, 1.0, 0.8, box=PeriodicBox(7.0, 7.0))
-    assert relax(packing, max_iterations=2000).reason is StopReason.COLLAPSED
+    relaxation = Relaxation(packing, tolerance=1e-6, max_iterations=5000)
+    assert relaxation.run(5000).reason is StopReason.CONVERGED
+    relaxation.write_back()
+    assert packing.semi_axes[1].min() > 0.0
 
 
 def test_no_grains() -> None:
