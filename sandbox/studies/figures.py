@@ -70,10 +70,22 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
     axes.set_ylabel(panel.y_label)
     if panel.log_x:
         axes.set_xscale("log")
+        _plain_numbers(axes.xaxis, *axes.get_xlim())
     if panel.log_y:
         axes.set_yscale("log")
+        _plain_numbers(axes.yaxis, *axes.get_ylim())
     if any(line.label for line in panel.lines):
         axes.legend()
+
+
+def _plain_numbers(axis: Any, low: float, high: float) -> None:
+    """Numbers along a logarithmic axis: powers of ten, over a short range 2 and 5 times these as well."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axis.set_minor_formatter(NullFormatter())
+    if high < 200.0 * low:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _draw_line(axes: Any, line: Line) -> None:

@@ -172,21 +172,23 @@ def judge_onset(results: Sequence[Result]) -> Finding:
     )
 
 
-def mean_curve(results: Sequence[Result], x: str, y: str) -> tuple[Floats, Floats, Floats]:
-    """Mean and spread over seeds of y, at places x that all runs have reached. Each (POINTS,)."""
+def mean_curve(
+    results: Sequence[Result], x: str, y: str, *, log: bool = False
+) -> tuple[Floats, Floats]:
+    """Places x that all runs have reached, evenly spaced or in their logarithm, and the mean of y there. Each (POINTS,)."""
     low = max(float(np.min(r.column(x))) for r in results)
     high = min(float(np.max(r.column(x))) for r in results)
-    places = np.linspace(low, high, POINTS)
+    places = np.geomspace(low, high, POINTS) if log else np.linspace(low, high, POINTS)
     curves = []
     for result in results:
         order = np.argsort(result.column(x), kind="stable")
         curves.append(np.interp(places, result.column(x)[order], result.column(y)[order]))
-    return places, np.mean(curves, axis=0), np.std(curves, axis=0)
+    return places, np.mean(curves, axis=0)
 
 
-def _lines(results: Sequence[Result], x: str, y: str) -> tuple[Line, ...]:
+def _lines(results: Sequence[Result], x: str, y: str, *, log: bool = False) -> tuple[Line, ...]:
     return tuple(
-        Line(label(nu), colour(nu), *mean_curve(of_ratio(results, nu), x, y)[:2])
+        Line(label(nu), colour(nu), *mean_curve(of_ratio(results, nu), x, y, log=log))
         for nu in ratios(results)
     )
 
@@ -204,7 +206,13 @@ def squeeze_panels(results: Sequence[Result]) -> list[Panel]:
     return [
         Panel("Periodic box", strain, "pressure [k]", _lines(results, "stroke", "force")),
         Panel("Contacts at equal strain", strain, z, _lines(results, "stroke", "z")),
-        Panel("Contacts at equal pressure", "pressure [k]", z, _lines(results, "force", "z")),
+        Panel(
+            "Contacts at equal pressure",
+            "pressure [k]",
+            z,
+            _lines(results, "force", "z", log=True),
+            log_x=True,
+        ),
     ]
 
 

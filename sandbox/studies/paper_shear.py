@@ -76,7 +76,7 @@ def small_cycles(quick: bool) -> list[Request]:
 def steady_shears(quick: bool) -> list[Request]:
     """Fig. 4: shear until the stress is steady."""
     fractions = FRACTIONS[::2] if quick else FRACTIONS
-    strain, step = (0.6, 0.1) if quick else (1.0, 0.05)
+    strain, step = (0.6, 0.1) if quick else (0.8, 0.05)
     return _cell(quick, STEADY, fractions, strain=strain, step=step)
 
 
@@ -387,7 +387,7 @@ def avalanche_panels(results: Sequence[Result]) -> list[Panel]:
     for nu in ratios(results):
         mine = of_ratio(results, nu)
         values = np.concatenate([np.array(r.lists["participation"]) for r in mine])
-        density, edges = np.histogram(values, bins=np.linspace(0.0, 0.5, 26), density=True)
+        density, edges = np.histogram(values, bins=np.linspace(0.0, 1.0, 21), density=True)
         shares.append(Line(label(nu), colour(nu), 0.5 * (edges[1:] + edges[:-1]), density))
         counts = np.sum([r.lists["change_histogram"] for r in mine], axis=0)
         width = np.diff(CHANGE_BINS)
