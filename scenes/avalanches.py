@@ -42,7 +42,8 @@ class Avalanches(Scene):
     """Simple shear of a cell that is periodic both ways (Lees and Edwards): the image above slides over the one below.
 
     Without plates there is no grain unlike the others, so that shares of grains mean the same everywhere; and it is half the
-    work of the shear cell. All kinds of packings are compressed to the same pressure, then sheared at fixed volume.
+    work of the shear cell. All kinds of packings are compressed to the same pressure, then sheared at fixed volume. The lower
+    the pressure, the more alike they are: grains that are hardly squeezed are discs, whatever their Poisson's ratio.
     """
 
     name = "avalanches"
@@ -55,7 +56,7 @@ class Avalanches(Scene):
     default_steps = 336
     parameters = (
         Parameter("grains", 400, "", 60, 4000, "number of grains, exactly"),
-        Parameter("pressure", 0.02, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
+        Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
         Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive"),
         *MATERIAL,
         *SOLVER,
