@@ -78,7 +78,7 @@ class Result:
     columns: Mapping[str, list[float]] = field(default_factory=dict)
     lists: Mapping[str, list[float]] = field(default_factory=dict)  # of no fixed length
     converged: float = 0.0  # share of the increments
-    seconds: float = 0.0
+    seconds: float = 0.0  # of one core
     ended: str | None = None
     failure: str | None = None
 
@@ -103,7 +103,7 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
         if stopping():
             raise Stopped
 
-    began = time.perf_counter()
+    began = time.process_time()
     session = Session(request.scene, request.packing, request.seed, dict(request.settings))
     steps = request.steps or session.scene.steps(session.settings)
     session.build(check)
@@ -126,7 +126,7 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
         columns,
         probe.lists(),
         float(np.mean(reasons == "converged")) if len(reasons) else 1.0,
-        time.perf_counter() - began,
+        time.process_time() - began,
         ended,
     )
 
