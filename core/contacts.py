@@ -89,6 +89,30 @@ def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
     return energy
 
 
+@kernel(noalias=True)
+def slot_force_sum(neighbor, stiffness, x, y, s, u, v, box):
+    """Sum of the normal forces [k R] of one slot, and how many contacts carry one. Vectorises, as ``slot_forces`` does."""
+    total = 0.0
+    contacts = 0.0
+    for i in range(neighbor.shape[0]):
+        j = neighbor[i]
+        dx = x[j] - x[i]
+        dy = y[j] - y[i]
+        if box is not None:
+            rows = np.rint(dy * box[3])
+            dx -= rows * box[4]
+            dy -= rows * box[2]
+            dx -= box[0] * np.rint(dx * box[1])
+        r2 = dx * dx + dy * dy + COINCIDENT
+        c2 = (dx * dx - dy * dy) / r2
+        s2 = 2.0 * dx * dy / r2
+        overlap = math.sqrt(s[i] + u[i] * c2 + v[i] * s2)
+        overlap += math.sqrt(s[j] + u[j] * c2 + v[j] * s2) - math.sqrt(r2)
+        total += stiffness[i] * overlap if overlap > 0.0 else 0.0
+        contacts += 1.0 if overlap > 0.0 else 0.0
+    return total, contacts
+
+
 @kernel
 def add_contact_forces(state, support, force, count, offset, neighbor, stiffness, box):
     """Add all grain–grain contacts to ``force``; return their energy [k R²]."""

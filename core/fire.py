@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.contacts import add_contact_forces, grain_overlap, prepare
+from core.contacts import add_contact_forces, prepare, slot_force_sum
 from core.elasticity import add_guard, finish
 from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
@@ -280,13 +280,22 @@ def mean_contact_force(m, box, rigid):
     total = 0.0
     contacts = 0.0
     for t in range(width.shape[0]):
+        n = width[t]
+        if n == 0:
+            break
         first = offset[t]
-        for i in range(width[t]):
-            j = neighbor[first + i]
-            f = stiffness[first + i] * grain_overlap(state, support, i, j, box)[0]
-            if f > 0.0:
-                total += 0.5 * f
-                contacts += 0.5
+        force, number = slot_force_sum(
+            neighbor[first : first + n],
+            stiffness[first : first + n],
+            state[0],
+            state[1],
+            support[0],
+            support[1],
+            support[2],
+            box,
+        )
+        total += 0.5 * force  # each pair is met twice
+        contacts += 0.5 * number
     if rigid is not None:
         primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
         contact_stiffness = m.grains.contact_stiffness

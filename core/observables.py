@@ -212,12 +212,13 @@ def stress(
 def grain_stress(
     packing: Packing, pairs: GrainContacts, bodies: RigidContacts, primitives: Floats
 ) -> Floats:
-    """Mean stress inside each grain from its normal forces (3, N) [k]: pressure, and the deviator's two parts; compression positive.
+    """Mean stress inside each grain from its normal forces (3, N) [k]: pressure, and the deviator's two parts.
 
-    σ = (1/A) Σ_c f h n⊗n with the area A = π(p² − |q|²), normal force f, its direction n at angle φ and the support function h: the
-    work of the contacts in a uniform strain of the grain, as f is conjugate to h. Hence p = Σ f h / 2A and the deviator is
-    Σ f h (cos 2φ, sin 2φ) / 2A; the difference of the principal stresses is twice its length. One circle between two plates that
-    push with F: p = F/(πR), difference 2F/(πR). ``primitives`` (M, 8) are those that ``bodies`` touch.
+    Compression is positive. σ = (1/A) Σ_c f h n⊗n with the area A = π(p² − |q|²), normal force f, its direction n at angle φ
+    and the support function h: the work of the contacts in a uniform strain of the grain, as f is conjugate to h. Hence
+    p = Σ f h / 2A and the deviator is Σ f h (cos 2φ, sin 2φ) / 2A; the difference of the principal stresses is twice its
+    length. One circle between two plates that push with F: p = F/(πR), difference 2F/(πR). ``primitives`` (M, 8) are those
+    that ``bodies`` touch.
     """
     count = len(packing)
     grain = np.concatenate([pairs.i, pairs.j, bodies.grain])

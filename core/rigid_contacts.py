@@ -40,8 +40,8 @@ class RigidTerms(NamedTuple):
 
 
 def allocate(primitives: NDArray[np.float64], grains: int) -> RigidTerms:
-    """Terms for ``grains`` grains near ``primitives`` (M, 8); room for every pair up to 64 a grain."""
-    capacity = max(64, min(len(primitives), 64) * grains)
+    """Terms for ``grains`` grains near ``primitives`` (M, 8). Who finds the room too short doubles it."""
+    capacity = 64 + 2 * grains
     return RigidTerms(
         np.ascontiguousarray(primitives, dtype=np.float64),
         np.zeros(capacity, dtype=np.int64),
