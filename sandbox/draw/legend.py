@@ -46,12 +46,12 @@ def draw_header(
     left, right = rect.left + pad, rect.right - pad
     title = type_.width(frame.title, HEADING, bold=True)
 
-    choices = _choices(painter, frame, look, chain_top)
+    choices, enough = _choices(painter, frame, look, chain_top)
     widths = [sum(part.width + gap for part in parts) for parts in choices]
     room = right - left
-    fitting = [k for k, width in enumerate(widths) if title + width <= room]
-    # Where nothing fits beside the whole title, the title gives way to the least that says enough.
-    fitting += [k for k, width in enumerate(widths) if width <= room][-1:]
+    fitting = [k for k, width in enumerate(widths[:-1]) if title + width <= room]
+    # Where nothing fits beside the whole title, it gives way to what says enough.
+    fitting += [k for k in range(enough, len(widths)) if widths[k] <= room]
     x = float(right)
     if fitting:
         for part in reversed(choices[fitting[0]]):
@@ -64,8 +64,8 @@ def draw_header(
 
 def _choices(
     painter: Painter, frame: Frame, look: Look, chain_top: float | None
-) -> list[list[Part]]:
-    """What to show from left to right, best first; the last is the least that says enough."""
+) -> tuple[list[list[Part]], int]:
+    """What to show from left to right, best first; those from the index on say just enough."""
     long, short = (
         _kinds(painter, frame, look, names) for names in (words.KINDS, words.KINDS_SHORT)
     )
@@ -73,12 +73,12 @@ def _choices(
     chains = [] if chain_top is None else [_chains(painter, look, chain_top, BAR)]
     if look.values is not None:
         bar, least = (_measure(painter, look, length) for length in (BAR, SHORT_BAR))
-        return [[*short, *chains, bar], [*short, bar], [*chains, bar], [bar], [least], [name]]
+        return [[*short, *chains, bar], [*short, bar], [*chains, bar], [bar], [least], [name]], 3
     if look.view.only_chains and chain_top is not None:
         least = _chains(painter, look, chain_top, SHORT_BAR)
-        return [[*long, *chains], [*short, *chains], chains, [least], [name]]
+        return [[*long, *chains], [*short, *chains], chains, [least], [name]], 2
     full = [[*long, *chains, name], [*short, *chains, name], [*short, *chains]]
-    return [*full, [*long, name], [*short, name], short]
+    return [*full, [*long, name], [*short, name], short], 5
 
 
 def _name(painter: Painter, text: str) -> Part:
@@ -112,7 +112,7 @@ def _kind(painter: Painter, look: Look, kind: str, name: str) -> Part:
         if look.view.made:
             painted = (np.full(1, colour, dtype=np.uint32), np.full(1, rim, dtype=np.uint32))
             raster.draw_made_grains(
-                painter.canvas(), grain, radius * one, zero, one, marked, painted, scale, 0.0
+                painter.canvas(), grain, radius * one, zero, one, marked, painted, float(scale), 0.0
             )
         else:
             painter.disc(x + radius, y, radius, colour, edge=rim, edge_width=1.5 * scale)

@@ -20,7 +20,8 @@ from sandbox.frame import Frame, HandleState
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
-CHAIN_RIM = 1.2  # round plain chains at scale 1 [px]
+SLIM = 0.6  # plain chains are narrower by this: the grains are what the view is about
+CHAIN_RIM = 1.0  # round plain chains at scale 1 [px]
 FADE_FROM, FADE_TO = 0.3, 1.0  # of the mean force: where chains begin to show, and show fully
 FAINT_FROM, FAINT_TO = 0.004, 0.06  # and the same of the scale's top
 KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
@@ -65,7 +66,8 @@ def draw_chains(
     canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
     width = widest * np.sqrt(share[order])
     theme = painter.theme
-    if plain:  # a rim of ground colour sets them off from grains of any colour
+    if plain:  # slim, with a rim of ground colour that sets them off from grains of any colour
+        width *= SLIM
         ground = np.full(order.size, theme.ground, dtype=np.uint32)
         rim = width + CHAIN_RIM * painter.scale
         raster.draw_lines(canvas, (x0, y0, x1, y1), rim, ground, alpha[order])

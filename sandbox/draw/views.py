@@ -13,14 +13,16 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from sandbox.draw import words
-from sandbox.draw.theme import CIVIDIS, Theme, magnitude_colours
+from sandbox.draw.theme import Theme, magnitude_colours
 from sandbox.frame import Frame
 
 Floats = NDArray[np.float64]
 Colours = NDArray[np.uint32]
 Colouring = Callable[[Theme, Floats], Colours]
 
-FILL_RAMPS = {"dark": (0.0, 1.0), "light": (0.94, 0.0)}  # parts of cividis
+# Parts of cividis on grains, from no value to the top: the mark in ground colour shows on all of it.
+FILL_RAMPS = {"dark": (0.2, 1.0), "light": (0.8, 0.0)}
+FRINGE_RAMPS = {"dark": (0.2, 1.0), "light": (0.0, 0.8)}  # from no light to full light
 FRINGES = 2.0  # dark bands from no stress to the top of the scale, the first excepted
 
 
@@ -31,14 +33,14 @@ def pressure(frame: Frame) -> Floats:
 
 def shape(frame: Frame) -> Floats:
     """(a − b)/(a + b) of the semi-axes a ≥ b; 0 for a circle."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         values: Floats = np.hypot(frame.q1, frame.q2) / frame.p
     return values
 
 
 def area_lost(frame: Frame) -> Floats:
     """What part of its area at rest each grain has lost [%]; 0 where it has grown."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         area = frame.p * frame.p - frame.q1 * frame.q1 - frame.q2 * frame.q2
         values: Floats = np.maximum(100.0 * (1.0 - area / frame.rest_radius**2), 0.0)
     return values
@@ -52,7 +54,8 @@ def motion(frame: Frame) -> Floats:
     own = frame.motion
     finite = np.isfinite(own).all(axis=0)
     mean = own[:, finite].mean(axis=1) if finite.any() else np.zeros(2)
-    values: Floats = np.hypot(*(own - mean[:, None]))
+    with np.errstate(all="ignore"):
+        values: Floats = np.hypot(*(own - mean[:, None]))
     return values
 
 
@@ -62,16 +65,15 @@ def stress_difference(frame: Frame) -> Floats:
 
 
 def fill_colours(theme: Theme, share: Floats) -> Colours:
-    """Magnitudes on nearly all of cividis: a grain's rim sets it off from the ground."""
+    """Magnitudes on more of cividis than lines can use: a rim sets grains off from the ground."""
     return magnitude_colours(theme, share, FILL_RAMPS[theme.name])
 
 
-def fringe_colours(_theme: Theme, share: Floats) -> Colours:
+def fringe_colours(theme: Theme, share: Floats) -> Colours:
     """Brightness as sin² of the stress, dark at none: as between crossed polarisers."""
     bounded = np.clip(np.nan_to_num(share, nan=0.0), 0.0, 1.0)
     light = np.sin(np.pi * FRINGES * bounded) ** 2
-    colours: Colours = CIVIDIS[np.rint(255.0 * light).astype(np.intp)]
-    return colours
+    return magnitude_colours(theme, light, FRINGE_RAMPS[theme.name])
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +96,7 @@ class View:
 
     def colours(self, theme: Theme, values: Floats, top: float) -> Colours:
         """Colours of values (N,) on a scale from 0 to ``top``; grey for what is no number."""
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(all="ignore"):
             colours = self.colouring(theme, values / top)
         return np.where(np.isfinite(values), colours, np.uint32(theme.hairline))
 

@@ -40,7 +40,7 @@ class Look:
 
 def mark_openness(p: Floats, q1: Floats, q2: Floats, rest_radius: Floats) -> Floats:
     """How far the mark of an auxetic grain is open: 1 at rest or larger, 0 when well squeezed."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         area = (p * p - q1 * q1 - q2 * q2) / (rest_radius * rest_radius)
     return np.clip((area - CLOSED_AREA) / (1.0 - CLOSED_AREA), 0.0, 1.0)
 

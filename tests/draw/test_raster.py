@@ -271,14 +271,17 @@ def test_warmup_compiles_what_drawing_uses() -> None:
     kernels = [
         raster.draw_ellipses,
         raster.draw_bow_ties,
+        raster.draw_made_grains,
         raster.draw_lines,
         raster.draw_hull,
         raster.draw_ring,
     ]
     before = [len(kernel.signatures) for kernel in kernels]
     from sandbox.draw.render import Renderer
-    from tests.draw.frames import hopper_frame, intruder_frame
+    from sandbox.draw.words import VIEWS
+    from tests.draw.frames import hopper_frame, intruder_frame, periodic_frame
 
-    for frame in (intruder_frame(8), hopper_frame()):
-        Renderer((640, 400), scale=2).draw(frame, notices=("a notice",))
+    for frame in (intruder_frame(8), hopper_frame(), periodic_frame()):
+        for view in VIEWS:
+            Renderer((640, 400), scale=2, view=view).draw(frame, notices=("a notice",))
     assert [len(kernel.signatures) for kernel in kernels] == before

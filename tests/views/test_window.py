@@ -194,6 +194,19 @@ def test_keys_by_what_is_printed_on_them(running: Desk) -> None:
     assert len(running.session.commands) == 1
 
 
+def test_views_in_turn(running: Desk) -> None:
+    seen = []
+    for _ in range(len(words.VIEWS)):
+        running.key(pygame.K_v)
+        renderer = running.app.renderer
+        seen.append(renderer.view.name)
+        assert renderer.chains == renderer.view.chains
+        running.key(pygame.K_f)  # where chains are all there is to see they stay
+        assert renderer.chains == (renderer.view.chains == renderer.view.only_chains)
+    assert sorted(seen) == sorted(words.VIEWS)
+    assert seen[-1] == "kind"
+
+
 def test_chains_theme_scale_and_help(running: Desk) -> None:
     running.key(pygame.K_f)
     assert not running.app.renderer.chains
