@@ -139,7 +139,10 @@ def test_wrong_assignments_are_explained(texts: list[str], advice: str) -> None:
         (["record", "hopper", "--steps", "0"], "--steps: 0 is out of range"),
         (["record", "hopper", "--seed", "-1"], "--seed: -1 is out of range"),
         (["play", "--theme", "drak"], r"--theme: .*did you mean dark\?"),
-        (["play", "--view", "presure"], r"--view: .*did you mean pressure\?.*chains or fringes; see"),
+        (
+            ["play", "--view", "presure"],
+            r"--view: .*did you mean pressure\?.*chains or fringes; see",
+        ),
         (["record", "hopper", "--view", "x"], "--view: unknown value 'x': use kind, skin, "),
         (["play", "--scale", "9"], "--scale: 9 is out of range: use 0.5 to 4"),
         (["list", "--jsno"], r"did you mean --json\?"),

@@ -141,3 +141,16 @@ def test_the_bar_of_the_build_never_goes_back(capsys: pytest.CaptureFixture[str]
     shown = capsys.readouterr().err
     assert "100%" in shown
     assert "200%" not in shown
+
+
+@pytest.mark.parametrize(("view", "theme"), [("skin", "dark"), ("pressure", "light")])
+def test_a_film_shows_the_view_that_was_asked_for(tmp_path: Path, view: str, theme: str) -> None:
+    from sandbox.draw.render import Renderer
+    from tests.draw.frames import intruder_frame
+
+    frame = intruder_frame(8)
+    output = Output(tmp_path / "film.png", None, (640, 360), 30.0, view, theme)
+    draw = record._drawer(output)
+    wanted = Renderer((640, 360), 0.5, theme, view).image(frame)
+    assert np.array_equal(draw(frame), wanted)
+    assert not np.array_equal(wanted, Renderer((640, 360), 0.5).image(frame))
