@@ -168,6 +168,7 @@ def test_a_process_that_dies_fails_its_run_alone(
 
 
 def test_figures_are_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
     import imageio.v2
     import numpy as np
 
@@ -243,6 +244,7 @@ def command(folder: Path, *words: str) -> list[str]:
 
 @pytest.mark.end_to_end
 def test_quick_study_of_one_claim(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
     words = command(tmp_path / "out", "--quick", "--only", "grain_row", "--jobs", "1")
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
@@ -265,6 +267,7 @@ def test_quick_study_of_one_claim(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="sends SIGINT as a terminal does")
 def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     """As in a terminal, all processes hear it; what was finished stays, and nobody is left behind."""
+    pytest.importorskip("matplotlib")
     words = command(tmp_path / "out", "--only", "grain_row", "intruder_drag", "--jobs", "1")
     process = subprocess.Popen(
         words, cwd=REPOSITORY, stderr=subprocess.PIPE, text=True, start_new_session=True
