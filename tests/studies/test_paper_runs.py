@@ -274,8 +274,9 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path: Path) -> None:
     )
     kept = tmp_path / "out" / "runs"
     end = time.monotonic() + 300.0
-    while not list(kept.glob("*.json")) and time.monotonic() < end:
+    while not list(kept.glob("*.json")) and process.poll() is None and time.monotonic() < end:
         time.sleep(0.05)
+    assert process.poll() is None, "the study ended before anybody pressed a key"
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
