@@ -11,7 +11,6 @@ from dataclasses import replace
 import numpy as np
 
 from core import observables
-from core.errors import InputError
 from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.hopper import WALL, Shape, standing_arch
@@ -95,13 +94,7 @@ class GravityHopper(Scene):
         return Ingredients(friction=float(values["friction"]) > 0.0, gravity=True)
 
     def validate(self, values: Values) -> None:
-        shape = Shape(values)
-        if shape.lip_x > shape.half_width - 0.5:
-            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
-        if shape.channel < LEAST_CHANNEL:
-            raise InputError(
-                "too few grains to fill the funnel: raise grains, or lower width or angle"
-            )
+        Shape(values).check(LEAST_CHANNEL)
 
     def build(
         self, values: Values, packing: str, seed: int, progress: Progress | None = None

@@ -75,13 +75,7 @@ class Hopper(Scene):
     )
 
     def validate(self, values: Values) -> None:
-        shape = Shape(values)
-        if shape.lip_x > shape.half_width - 0.5:
-            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
-        if shape.channel < LEAST_CHANNEL:
-            raise InputError(
-                "too few grains to fill the funnel: raise grains, or lower width or angle"
-            )
+        Shape(values).check(LEAST_CHANNEL)
 
     def steps(self, values: Values) -> int:
         end = min(float(values["stroke"]), Shape(values).channel - 1.0)
@@ -192,6 +186,15 @@ class Shape:
         funnel = (self.half_width + self.lip_x) * (self.neck - self.lip_y)
         grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
         self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
+
+    def check(self, least_channel: float) -> None:
+        """Raises InputError unless the lips stand within the channel, and the grains fill so much of it [R] above the funnel."""
+        if self.lip_x > self.half_width - 0.5:
+            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
+        if self.channel < least_channel:
+            raise InputError(
+                "too few grains to fill the funnel: raise grains, or lower width or angle"
+            )
 
 
 def standing_arch(

@@ -60,7 +60,6 @@ BUILDING = "{text} · {percent:.0f} %"
 
 MENU_TITLE = "Choose a scene"
 MENU_KEYS = "Arrow keys and Enter, or click   ·   1 2 3 packing   ·   T theme   ·   Esc quit"
-MENU_PACKING = "Packing"
 
 ERROR_TITLE = "This run has stopped"
 ERROR_ADVICE = "R: start this scene again · M: scene menu · Esc: quit"

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.material import from_paper
 from sandbox.studies.paper_claims import (
     Claim,
     Figure,
@@ -20,24 +21,23 @@ from sandbox.studies.paper_claims import (
 )
 from sandbox.studies.runs import Request, Result
 
-# λ, μ = 0.1 of the paper as (ν, C): ν = (λ − 1)/(λ + 1), C = 2 + (λ + 1)²/(λμ).
+# λ and μ of the paper.
 LAMBDAS = (0.01, 0.1, 1.0, 10.0, 100.0)
 MU = 0.1
 RADII = (0.5, 1.0, 2.0)
-FIRST = 0.005  # compression of the linear response
 SMALL_ERROR = 0.01
 ASPECTS = (1.05, 1.1, 1.2, 1.4)
 WITHIN = 5.0  # the factor between the second-order terms, by the paper
 
 
 def _grain(lam: float, radius: float = 1.0) -> Request:
-    nu = (lam - 1.0) / (lam + 1.0)
+    nu, stiffness = map(float, from_paper(lam, MU))
     return Request(
         "single_grain",
         "auxetic" if nu < 0.0 else "regular",
         settings=(
             ("poisson_ratio", abs(nu)),
-            ("contact_stiffness", 2.0 + (lam + 1.0) ** 2 / (lam * MU)),
+            ("contact_stiffness", stiffness),
             ("radius", radius),
             ("compression", 0.2),
             ("step", 0.01 * radius),
