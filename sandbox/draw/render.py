@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pygame
@@ -50,6 +51,7 @@ class Renderer:
         self.theme = theme_named(theme)
         self.type = Type(scale)
         self.surface = pygame.Surface(size, 0, 32)
+        self._wanted: dict[str, Any] = {}  # of the layout: panes, panel, timeline
         self.layout: Layout = layout(size, scale)
         self.camera = Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0)
         self.forget()
@@ -70,7 +72,12 @@ class Renderer:
             self.type = Type(scale)
         if size != self.size:
             self.surface = pygame.Surface(size, 0, 32)
-        self.layout = layout(size, self.type.scale)
+        self.layout = layout(size, self.type.scale, **self._wanted)
+
+    def arrange(self, *, panes: int = 1, panel: bool = False, timeline: bool = False) -> None:
+        """How many canvases, and whether there is a panel and a time line if there is room."""
+        self._wanted = {"panes": panes, "panel": panel, "timeline": timeline}
+        self.layout = layout(self.size, self.type.scale, **self._wanted)
 
     def set_theme(self, name: str) -> None:
         """Dark or light."""

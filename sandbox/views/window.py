@@ -24,6 +24,7 @@ from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_displ
 from sandbox.views.window_hand import REACH, Mouse
 from sandbox.views.window_keys import Action, action_of, packing_for
 from sandbox.views.window_menu import Choice, Menu
+from sandbox.views.window_parts import Part
 from sandbox.views.window_run import Run
 from scenes import registry
 
@@ -90,6 +91,7 @@ class App:
         self.show_menu = False
         self.show_help = False
         self.mouse = Mouse()
+        self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.screen = open_display(size)
         self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
         scenes = [registry.get(name) for name in registry.names()]
@@ -148,6 +150,8 @@ class App:
         if self._toasts and self._toasts[0][0] < now:
             self._toasts = [toast for toast in self._toasts if toast[0] >= now]
             self._dirty = True
+        for part in self._parts():
+            self._dirty |= part.tick(now)
         moving = self._splash or snapshot.phase == "building" or self.mouse.holding
         if self._dirty or moving or now - self._drawn >= REST:
             self._draw(snapshot, now)
@@ -190,6 +194,10 @@ class App:
                 paused=self.run.paused,
                 notices=self._notices(snapshot),
             )
+        painter = self.renderer.painter()
+        for part in self._parts():
+            part.draw(painter)
+        painter.flush()
         if snapshot.phase == "failed":
             draw_error(self.renderer.painter(), snapshot.error)
         if self.show_help:
@@ -217,6 +225,11 @@ class App:
             with contextlib.suppress(pygame.error):  # not every screen has these cursors
                 pygame.mouse.set_cursor(wanted)
 
+    def _parts(self) -> list[Part]:
+        """The parts that are there now: none under a page."""
+        hidden = self.show_menu or self.show_help or self.run.snapshot.frame is None
+        return [] if hidden else self.parts
+
     # -- what a person does --
 
     def handle(self, event: pygame.event.Event) -> None:
@@ -226,6 +239,8 @@ class App:
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):
             self.screen = pygame.display.get_surface() or self.screen
             self.renderer.resize(self.screen.get_size())
+        elif any(part.handle(event) for part in self._parts()):
+            pass
         elif event.type == pygame.KEYDOWN:
             action = action_of(event)
             if action is not None:
@@ -306,6 +321,8 @@ class App:
 
     def _act_on_run(self, action: Action) -> None:
         frame = self.run.snapshot.frame
+        if any(part.act(action) for part in self._parts()):
+            return
         if action is Action.PAUSE:
             self.run.pause_or_go_on()
         elif action in (Action.STEP, Action.RIGHT):

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from sandbox.draw.camera import Camera
 from sandbox.draw.cards import MenuEntry, draw_error, draw_help, draw_menu, menu_layout
-from sandbox.draw.layout import layout
+from sandbox.draw.layout import SEAM, layout
 from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
@@ -43,16 +43,27 @@ ENTRIES = [
 ]
 
 
-@given(size=sizes, scale=scales)
-def test_layout_fills_the_window_without_overlap(size: tuple[int, int], scale: float) -> None:
-    places = layout(size, scale)
+@given(
+    size=sizes,
+    scale=scales,
+    panes=st.integers(1, 3),
+    panel=st.booleans(),
+    timeline=st.booleans(),
+)
+def test_layout_fills_the_window_without_overlap(
+    size: tuple[int, int], scale: float, panes: int, panel: bool, timeline: bool
+) -> None:
+    places = layout(size, scale, panes=panes, panel=panel, timeline=timeline)
+    assert len(places.canvases) == panes
     window = pygame.Rect((0, 0), size)
     for rect in places.rects():
-        assert window.contains(rect) or rect.height == 0
+        assert window.contains(rect) or rect.height == 0 or rect.width == 0
     for first, second in combinations(places.rects(), 2):
         assert not first.colliderect(second)
-    assert sum(rect.width * rect.height for rect in places.rects()) == size[0] * size[1]
+    seams = (panes - 1) * round(SEAM * scale) * places.canvas.height
+    assert sum(rect.width * rect.height for rect in places.rects()) + seams == size[0] * size[1]
     assert places.canvas.height >= 0.4 * size[1]
+    assert sum(rect.width for rect in places.canvases) >= 0.5 * size[0]
     assert places.status.height > 0
 
 
