@@ -354,12 +354,10 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations):
         if control[COUNTDOWN] <= 0.0 or largest_force <= limits.tolerance * control[SCALE]:
             control[COUNTDOWN] = SCALE_EVERY
             control[SCALE] = max(mean_contact_force(m, box, rigid), limits.force_floor)
-            if collapsed(m.state):
-                control[RESIDUAL] = largest_force / control[SCALE]
-                return COLLAPSED, iteration + 1
         control[RESIDUAL] = largest_force / control[SCALE]
         if control[RESIDUAL] <= limits.tolerance:
-            return CONVERGED, iteration + 1
+            # Asked here only: a grain that is flat on the way is pushed back by the guard of its area.
+            return COLLAPSED if collapsed(m.state) else CONVERGED, iteration + 1
         if power > 0.0:
             control[DOWNHILL] += 1.0
             alpha = control[ALPHA]

@@ -140,7 +140,8 @@ class Relaxation:
             else:
                 self._reason = _REASONS[code]
         if self._reason is StopReason.BUDGET and self.iterations >= self.max_iterations:
-            self._reason = StopReason.ITERATION_LIMIT
+            flat = fire.collapsed(self._minimizer.state)
+            self._reason = StopReason.COLLAPSED if flat else StopReason.ITERATION_LIMIT
         return self.report()
 
     def report(self) -> Report:
