@@ -146,20 +146,21 @@ def test_a_process_that_dies_fails_its_run_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from sandbox.studies import runs
+    from sandbox.studies.pool import Pool
 
     store = Store(tmp_path)
     told: list[Result] = []
     first = [True]
     true = runs._execute
 
-    def call(pool: runs._Pool, function: object, *arguments: object) -> object:
+    def call(pool: Pool, function: object, *arguments: object) -> object:
         if function is true and first.pop():
             first.append(False)
             return real(pool, os._exit, 3)
         return real(pool, function, *arguments)  # type: ignore[arg-type]
 
-    real = runs._Pool.call
-    monkeypatch.setattr(runs._Pool, "call", call)
+    real = Pool.call
+    monkeypatch.setattr(Pool, "call", call)
     run_all([tiny("regular"), tiny("auxetic")], store, 1, told.append)
     assert [result.failure for result in told] == [runs.LOST, None]
 

@@ -1,0 +1,88 @@
+"""Processes that a study runs in: deaf to Ctrl-C, gone when the study is, replaced when one dies."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import connection
+from multiprocessing.synchronize import Event
+from typing import Any
+
+from sandbox.interrupts import deferred
+
+
+class Pool:
+    """Processes that hear no Ctrl-C, end when told so or when this one is gone, and are replaced if one dies."""
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._context = multiprocessing.get_context("spawn")
+        self._stop = self._context.Event()
+        self._executor: ProcessPoolExecutor | None = None
+
+    def __enter__(self) -> Pool:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._stop.set()
+        if self._executor is not None:
+            with deferred():
+                self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def call(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
+        """Have ``function`` called in some process."""
+        with _signals_blocked():  # a new process inherits that, and leaves Ctrl-C to this one
+            try:
+                return self._running().submit(function, *arguments)
+            except BrokenProcessPool:
+                self._executor = None
+                return self._running().submit(function, *arguments)
+
+    def _running(self) -> ProcessPoolExecutor:
+        if self._executor is None:
+            self._executor = ProcessPoolExecutor(
+                self._jobs, self._context, _begin, (self._stop, os.getpid())
+            )
+        return self._executor
+
+
+_stop: Event | None = None  # of this process, if it is one of a pool
+
+
+def _begin(stop: Event, parent: int) -> None:
+    """In a new process of the pool."""
+    global _stop
+    _stop = stop
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    process = multiprocessing.parent_process()
+    if process is not None and process.pid == parent:
+
+        def end_with_parent() -> None:
+            connection.wait([process.sentinel])
+            os._exit(1)
+
+        threading.Thread(target=end_with_parent, daemon=True).start()
+
+
+def stopping() -> bool:
+    """In a process of a pool: whether the study has been interrupted."""
+    return _stop is not None and _stop.is_set()
+
+
+@contextmanager
+def _signals_blocked() -> Iterator[None]:
+    """Ctrl-C waits until the end of the block. Windows knows no such mask; there ``_begin`` comes a little later."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
