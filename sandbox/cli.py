@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING
 from core.errors import InputError
 from sandbox import __version__, arguments
 from sandbox.arguments import Parser, argument
+from sandbox.exit_codes import DIFFERENT, INTERRUPTED, OK, USER_MISTAKE
+from sandbox.studies import commands as studies
 
 if TYPE_CHECKING:
     from sandbox.session import Session
@@ -25,11 +27,7 @@ if TYPE_CHECKING:
 PROGRAM = "python -m sandbox"
 FILM_SUFFIXES = (".mp4", ".gif", ".png")
 
-OK = 0
-DIFFERENT = 1  # a replay came out otherwise than its log says
-USER_MISTAKE = 2
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
-INTERRUPTED = 130  # as shells count: 128 + SIGINT
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -142,15 +140,20 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     )
     bench.add_argument("--quick", action="store_true", help="under half a minute, less exact")
 
-    study = command("study", _study, "Measure the claims of the paper: tables and figures.")
+    study = command("study", _study, "Measure, and write tables and figures.")
     study.add_argument(
-        "name", metavar="NAME", type=argument(arguments.one_of("paper")), help="paper"
+        "name",
+        metavar="NAME",
+        type=argument(arguments.one_of(*studies.STUDIES)),
+        help=arguments.any_of(list(studies.STUDIES)),
     )
     study.add_argument(
         "--out", metavar="DIR", required=True, help="folder for results; what is there is kept"
     )
     study.add_argument("--quick", action="store_true", help="fewer seeds, smaller packings")
-    study.add_argument("--only", nargs="+", metavar="CLAIM", help="these claims instead of all")
+    study.add_argument(
+        "--only", nargs="+", metavar="CLAIM", help="these claims instead of all (paper)"
+    )
     study.add_argument(
         "--jobs",
         type=argument(arguments.whole_number(1, 64)),
@@ -323,25 +326,8 @@ def _bench(options: argparse.Namespace) -> int:
 
 
 def _study(options: argparse.Namespace) -> int:
-    from sandbox.interrupts import stop_like_ctrl_c
-    from sandbox.studies import paper
-
-    paper.choose(options.only)
-    paper.require_matplotlib()
-    folder = paper.prepare_folder(options.out)
-    with stop_like_ctrl_c():
-        outcome = paper.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
-    if outcome.interrupted:
-        print(
-            f"stopped after {outcome.runs} runs: the same command goes on from there",
-            file=sys.stderr,
-        )
-        return INTERRUPTED
-    width = max(len(row.claim.name) for row in outcome.judged)
-    for row in outcome.judged:
-        print(f"{row.claim.name:<{width}}  {paper.summary(row.finding)}")
-    print(f"table, numbers and figures: {folder / 'claims.md'}, results.json, *.png")
-    return OK
+    studies.refuse_foreign_options(options)
+    return studies.STUDIES[options.name](options)
 
 
 def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> Output | None:

@@ -1,0 +1,51 @@
+"""The studies that ``study NAME`` can run: each reads the options of the command line and returns an exit code.
+
+Light at the top, as the command line is; a study imports what it needs when it runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+
+from core.errors import InputError
+from sandbox.exit_codes import INTERRUPTED, OK
+
+Study = Callable[[argparse.Namespace], int]
+
+
+def paper(options: argparse.Namespace) -> int:
+    """Judge the claims of the paper."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies import paper as study
+
+    study.choose(options.only)
+    study.require_matplotlib()
+    folder = study.prepare_folder(options.out)
+    with stop_like_ctrl_c():
+        outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
+    if outcome.interrupted:
+        return stopped(outcome.runs)
+    width = max(len(row.claim.name) for row in outcome.judged)
+    for row in outcome.judged:
+        print(f"{row.claim.name:<{width}}  {study.summary(row.finding)}")
+    print(f"table, numbers and figures: {folder / 'claims.md'}, results.json, *.png")
+    return OK
+
+
+def stopped(runs: int) -> int:
+    """Say that a study was interrupted after so many runs; the exit code for that."""
+    print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
+    return INTERRUPTED
+
+
+def refuse_foreign_options(options: argparse.Namespace) -> None:
+    """Raise InputError for an option that belongs to another study."""
+    for name, study in OWN_OPTIONS.items():
+        if options.name != study and getattr(options, name):
+            raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
+
+
+STUDIES: dict[str, Study] = {"paper": paper}
+OWN_OPTIONS = {"only": "paper"}
