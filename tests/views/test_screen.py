@@ -1,135 +1,24 @@
-"""The real program on a real X screen that nobody sees, with mouse and keys sent from outside."""
+"""The smallest use of the real program on a real screen: open, drag, look, quit."""
 
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import subprocess
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-import pygame
 import pytest
-from numpy.typing import NDArray
 
-from sandbox.draw.theme import HAND, channels
+from tests.views.screen import Person, invisible_screen, needs_screen, play, wait_for
 
-REPOSITORY = Path(__file__).parents[2]
-TOOLS = ("Xvfb", "xdotool")
-
-pytestmark = [
-    pytest.mark.end_to_end,
-    pytest.mark.skipif(
-        not all(map(shutil.which, TOOLS)), reason=f"needs {' and '.join(TOOLS)} on the path"
-    ),
-]
+pytestmark = [pytest.mark.end_to_end, needs_screen]
 
 
 @pytest.fixture
-def display() -> Iterator[str]:
-    """A screen of 1400 by 900 pixels."""
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
-        pass_fds=(writing,),
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(writing)
-    with os.fdopen(reading) as pipe:
-        number = pipe.readline().strip()
-    yield f":{number}"
-    server.terminate()
-    server.wait(10)
-
-
-def wait_for(condition: Callable[[], object], seconds: float, what: str) -> None:
-    patience = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < patience, f"waited in vain for {what}"
-        time.sleep(0.05)
-
-
-class Person:
-    """Sends keys and mouse to the one window of a screen, and looks at its screenshots."""
-
-    def __init__(self, display: str, folder: Path) -> None:
-        self.environment = {**os.environ, "DISPLAY": display}
-        self.folder = folder
-
-    def do(self, *words: object) -> str:
-        done = subprocess.run(
-            ["xdotool", *map(str, words)],
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        return done.stdout.strip()
-
-    def find_window(self) -> bool:
-        found = self.do("search", "--onlyvisible", "--class", ".").split()
-        if found:
-            self.do("windowfocus", "--sync", found[-1])
-            shown = self.do("getwindowgeometry", "--shell", found[-1])
-            numbers = dict(line.split("=") for line in shown.splitlines())
-            self.corner = int(numbers["X"]), int(numbers["Y"])
-        return bool(found)
-
-    def key(self, name: str) -> None:
-        self.do("key", name)
-
-    def screenshot(self) -> NDArray[np.uint8]:
-        before = set(self.folder.glob("sandbox*.png"))
-        self.key("F12")
-        wait_for(lambda: set(self.folder.glob("sandbox*.png")) - before, 20, "a screenshot")
-        (path,) = set(self.folder.glob("sandbox*.png")) - before
-        return pygame.surfarray.array3d(pygame.image.load(path))  # (width, height, 3)
-
-    def knob(self) -> tuple[int, int] | None:
-        """The middle of the largest orange thing, on the screen: not the thin arrow."""
-        orange = (self.screenshot() == channels(HAND)).all(axis=-1)
-        sums = np.pad(orange.astype(int).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
-        size = 17
-        boxes = (
-            sums[size:, size:] - sums[:-size, size:] - sums[size:, :-size] + sums[:-size, :-size]
-        )
-        x, y = np.unravel_index(boxes.argmax(), boxes.shape)
-        if boxes.max() < size * size // 4:
-            return None
-        return self.corner[0] + int(x) + size // 2, self.corner[1] + int(y) + size // 2
-
-
-@pytest.fixture
-def person(display: str, tmp_path: Path) -> Person:
-    return Person(display, tmp_path)
-
-
-@contextmanager
-def play(person: Person, *words: str) -> Iterator[subprocess.Popen[str]]:
-    """The program, ended in any case."""
-    environment = {
-        **person.environment,
-        "SDL_VIDEODRIVER": "x11",
-        "SDL_AUDIODRIVER": "dummy",
-        "PYTHONPATH": str(REPOSITORY),
-    }
-    with subprocess.Popen(
-        [sys.executable, "-m", "sandbox", "play", *words],
-        cwd=person.folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as program:
-        try:
-            yield program
-        finally:
-            program.kill()
+def person(tmp_path: Path) -> Iterator[Person]:
+    with invisible_screen() as display:
+        yield Person(display, tmp_path)
 
 
 def test_open_drag_and_quit(person: Person) -> None:
