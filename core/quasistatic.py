@@ -63,6 +63,7 @@ class Increment:
     reactions: Floats  # force and torque of the grains on each body, (B, 3) [k R, k R²]
     grain_contacts: observables.GrainContacts
     body_contacts: observables.RigidContacts
+    unbalanced: Floats  # (N,) size of the force that is left on each grain [k R]; 0 if it failed
     friction: FrictionForces | None = None
 
 
@@ -101,6 +102,7 @@ class Quasistatic:
         self._follow = follow
         self._relaxes = relaxes
         self.drag = drag
+        self.latest: Increment | None = None  # as it ended
         self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
@@ -176,6 +178,9 @@ class Quasistatic:
             self.world.place(self._placement)
         elif self._relaxes:
             self._relaxation.write_back()
+        unbalanced = np.zeros(len(self.packing))
+        if good and self._relaxes:
+            unbalanced = np.hypot(*self._relaxation.forces()[:2])
         forces = None
         if good and self.friction is not None and self._frozen is not None:
             forces = self.friction.end(self._frozen, self.packing, self._relaxation.turned())
@@ -183,7 +188,7 @@ class Quasistatic:
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._moved
-        return self._observe(report, forces)
+        return self._observe(report, unbalanced, forces)
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
         """All contacts as things stand now."""
@@ -282,19 +287,23 @@ class Quasistatic:
             self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
         )
 
-    def _observe(self, report: Report, friction: FrictionForces | None) -> Increment:
+    def _observe(
+        self, report: Report, unbalanced: Floats, friction: FrictionForces | None
+    ) -> Increment:
         _, owner = self.world.primitives()
         placement = self.world.placement()
         pairs, bodies = self._contacts = self.contacts()
         self.reactions = observables.reactions(bodies, owner, placement)
         if friction is not None:
             self.reactions += friction.reactions(owner, placement)
-        return Increment(
+        self.latest = Increment(
             moved=self._moved,
             stopped=self._stopped,
             report=report,
             reactions=self.reactions,
             grain_contacts=pairs,
             body_contacts=bodies,
+            unbalanced=unbalanced,
             friction=friction,
         )
+        return self.latest

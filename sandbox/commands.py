@@ -44,7 +44,10 @@ class Reset:
 
 @dataclass(frozen=True)
 class Change:
-    """Set a parameter, or "packing", "seed" or "scene"; the scene is then built anew."""
+    """Set a parameter, or "packing", "seed" or "scene".
+
+    A parameter that is ``live`` acts on the grains where they stand; for anything else the scene is built anew.
+    """
 
     name: str
     value: Scalar
@@ -57,9 +60,30 @@ class Protocol:
     on: bool
 
 
-Command = Grab | Move | Release | Reset | Change | Protocol
+@dataclass(frozen=True)
+class Recall:
+    """Go to the state after that increment, or after the nearest one before it that is kept.
+
+    What came later is kept too, until something moves.
+    """
+
+    increment: int
+
+
+@dataclass(frozen=True)
+class Undo:
+    """Back to the state before the last gesture, change, recall, reset or new start."""
+
+
+@dataclass(frozen=True)
+class Redo:
+    """Take the last undo back."""
+
+
+Command = Grab | Move | Release | Reset | Change | Protocol | Recall | Undo | Redo
 _BY_NAME: dict[str, type] = {
-    c.__name__.lower(): c for c in (Grab, Move, Release, Reset, Change, Protocol)
+    c.__name__.lower(): c
+    for c in (Grab, Move, Release, Reset, Change, Protocol, Recall, Undo, Redo)
 }
 
 
@@ -88,6 +112,9 @@ def from_data(data: dict[str, Any]) -> Command:
             ):
                 raise InputError(f"command {data['command']!r}: {name} must be a finite number")
             given[name] = float(value)
+        elif name == "increment":
+            if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+                raise InputError("command 'recall': increment must be a whole number from 0 on")
         elif name == "on":
             if not isinstance(value, bool):
                 raise InputError("command 'protocol': on must be true or false")

@@ -10,11 +10,15 @@ Units are in brackets: lengths in the reference grain radius ``R``, forces in ``
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from sandbox.history import Event
+from scenes.parameter import Value
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -27,6 +31,14 @@ CONVERGED = "converged"
 
 def _no_points(columns: int) -> FloatArray:
     return np.empty((0, columns), dtype=np.float64)
+
+
+def _no_grains() -> IntArray:
+    return np.empty(0, dtype=np.int64)
+
+
+def _no_numbers() -> FloatArray:
+    return np.empty(0, dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +55,10 @@ class Contacts:
     y1: FloatArray  # (C,) [R]
     force: FloatArray  # (C,) normal force, >= 0 [k R]
     rigid: BoolArray  # (C,) True where the line ends on a rigid body
+
+    # Which grains, as numbered in the frame; empty where nobody knows.
+    i: IntArray = field(default_factory=_no_grains)  # (C,)
+    j: IntArray = field(default_factory=_no_grains)  # (C,) -1: a rigid body
 
     @classmethod
     def none(cls) -> Contacts:
@@ -139,6 +155,17 @@ class Frame:
 
     # Only with friction: the angle that each grain has turned by, to draw a radius line.
     spin: FloatArray | None = None  # (N,) [rad]
+
+    # How far every grain is from equilibrium: its unbalanced force; empty where nobody knows.
+    residual_force: FloatArray = field(default_factory=_no_numbers)  # (N,) [k R]
+
+    # What is set, and what can be gone back to.
+    settings: Mapping[str, Value] = field(default_factory=dict)  # of the scene's parameters, now
+    first_kept: int = 0  # increments from here
+    last_kept: int = 0  # to here can be recalled; after a recall, later ones until something moves
+    can_undo: bool = False
+    can_redo: bool = False
+    events: tuple[Event, ...] = ()  # all since the start, the newest last
 
     @property
     def grains(self) -> int:

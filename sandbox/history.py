@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -24,6 +25,20 @@ class Row:
     resisting: (
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
+
+
+EventKind = Literal["clog", "arch", "avalanche"]
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that a scene announces once, when it begins."""
+
+    kind: EventKind
+    increment: int  # the row of the history that it happened in
+    stroke: float  # of that row [R], or what the scene plots instead
+    force: float  # against the drive, of that row [k R], or what the scene plots instead
+    text: str  # plain words
 
 
 _HEADER = (

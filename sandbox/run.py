@@ -216,7 +216,10 @@ class Run:
             self.engine.remove(gone)
             self.setup.packing = self.engine.packing
             pairs, bodies = self.engine.contacts()
-            self._last = replace(self._last, grain_contacts=pairs, body_contacts=bodies)
+            unbalanced = self._last.unbalanced[~gone]
+            self._last = replace(
+                self._last, grain_contacts=pairs, body_contacts=bodies, unbalanced=unbalanced
+            )
         return int(gone.sum())
 
     def _follow(self, moved: np.ndarray) -> None:
@@ -266,6 +269,7 @@ class Run:
         return take(
             View(
                 scene=self.scene,
+                settings=self.values,
                 packing_kind=self.packing_kind,
                 seed=self.seed,
                 setup=self.setup,

@@ -9,7 +9,18 @@ from collections.abc import Callable, Mapping
 from core.errors import InputError
 from core.packing import Packing
 from core.warmup import compile_kernels
-from sandbox.commands import Change, Command, Grab, Move, Protocol, Release, Reset
+from sandbox.commands import (
+    Change,
+    Command,
+    Grab,
+    Move,
+    Protocol,
+    Recall,
+    Redo,
+    Release,
+    Reset,
+    Undo,
+)
 from sandbox.frame import Frame
 from sandbox.history import History
 from sandbox.log import Log
@@ -108,6 +119,8 @@ class Session:
                 self._reset()
             case Change(name, value):
                 self._change(name, value)
+            case Recall() | Undo() | Redo():
+                raise InputError("there is nothing to go back to")
 
     def _reset(self) -> None:
         assert self._start is not None

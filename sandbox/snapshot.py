@@ -15,7 +15,7 @@ from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
 from sandbox.frame import BodyShape, Contacts, Frame, HandleState
 from sandbox.history import History
-from scenes.scene import Handle, Scene, Setup
+from scenes.scene import Handle, Scene, Setup, Values
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class View:
     """The parts of a session that a frame shows."""
 
     scene: Scene
+    settings: Values
     packing_kind: str
     seed: int
     setup: Setup
@@ -87,6 +88,9 @@ def take(view: View) -> Frame:
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if view.highlight is None else view.highlight.copy(),
+        residual_force=view.last.unbalanced.copy(),
+        settings=dict(view.settings),
+        last_kept=len(view.history) - 1,
     )
 
 
@@ -113,6 +117,8 @@ def _contact_lines(
         y1=np.concatenate([y[pairs.i] + pairs.dy, body_y + share * (grain_y - body_y)]),
         force=np.concatenate([pairs.normal_force, bodies.normal_force]),
         rigid=np.repeat([False, True], [len(pairs.i), len(bodies.grain)]),
+        i=np.concatenate([pairs.i, bodies.grain]),
+        j=np.concatenate([pairs.j, np.full(len(bodies.grain), -1)]),
     )
 
 

@@ -12,7 +12,10 @@ Value = float | int | bool
 
 @dataclass(frozen=True)
 class Parameter:
-    """One setting of a scene. Its type is that of ``default``; ``low`` and ``high`` are allowed values."""
+    """One setting of a scene. Its type is that of ``default``; ``low`` and ``high`` are allowed values.
+
+    ``live``: a change acts on the grains where they stand; without, the scene is built anew.
+    """
 
     name: str
     default: Value
@@ -20,6 +23,7 @@ class Parameter:
     low: Value
     high: Value
     help: str
+    live: bool = False
 
     @property
     def kind(self) -> str:
