@@ -234,6 +234,31 @@ class Friction:
         """Forget the grains that are not kept; contacts with them end by themselves."""
         self.spin = self.spin[keep]
 
+    def rearrange(self, source: Indices) -> None:
+        """Go on with other grains: ``source`` (n,) is what each was before, −1 for a new one, which has not turned yet."""
+        spin = np.append(self.spin, 0.0)
+        self.spin = spin[source]
+
+    def forget_primitives(self, first: int, count: int) -> None:
+        """Forget contacts with the ``count`` primitives from ``first`` on, which are taken away; later ones move up."""
+        primitive = self._keys % _GRAIN - _BODY
+        gone = (primitive >= first) & (primitive < first + count)
+        keys = np.where(primitive >= first + count, self._keys - count, self._keys)
+        self._keys, self._slips = keys[~gone], self._slips[~gone]
+
+    def memory(self) -> tuple[Indices, Floats]:
+        """What the contacts remember, for a file: their keys and slips ξ [R], (K,) each."""
+        return self._keys.copy(), self._slips.copy()
+
+    def remember(self, spin: Floats, keys: Indices, slips: Floats) -> None:
+        """Take up spins (N,) and what ``memory`` gave. Raises InputError unless the keys are in order and all is finite."""
+        whole = keys.ndim == 1 and keys.shape == slips.shape and spin.shape == self.spin.shape
+        if not whole or np.any(keys < 0) or np.any(np.diff(keys) <= 0):
+            raise InputError("what the frictional contacts remember is out of order")
+        if not (np.all(np.isfinite(spin)) and np.all(np.isfinite(slips))):
+            raise InputError("spins and slips of frictional contacts must be finite")
+        self.spin, self._keys, self._slips = spin.copy(), keys.copy(), slips.copy()
+
     def remembered(self) -> dict[tuple[int, int], float]:
         """Slip ξ [R] by (label, label) of two grains, or (label, −1 − primitive) of a grain and a body."""
         first, second = self._keys // _GRAIN, self._keys % _GRAIN

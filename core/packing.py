@@ -12,8 +12,10 @@ import os
 import struct
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -225,8 +227,20 @@ class Packing:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an NPZ (plain arrays, no pickle) under a temporary name, then rename. Raises OSError as the system does."""
+        with atomic_write(path) as file:
+            self.write(file)
+
+    def write(
+        self,
+        file: BinaryIO,
+        extra: Mapping[str, NDArray[np.generic]] | None = None,
+        *,
+        compressed: bool = True,
+    ) -> None:
+        """The NPZ of ``save``, with ``extra`` arrays beside the packing's own, which ``load`` passes over."""
         box = self.box
-        arrays = {
+        arrays: dict[str, NDArray[np.generic]] = {
+            **(extra or {}),
             "format": np.array(FORMAT),
             "version": np.array(FORMAT_VERSION),
             "state": self.state,
@@ -238,15 +252,19 @@ class Packing:
                 [] if box is None else [box.width, box.height, box.shift], dtype=np.float64
             ),
         }
-        with atomic_write(path) as file:
-            np.savez_compressed(file, allow_pickle=False, **arrays)
+        write = np.savez_compressed if compressed else np.savez
+        write(file, allow_pickle=False, **arrays)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Packing:
-        """Read what ``save`` wrote. Raises InputError for a missing, malformed, hostile or newer file; runs no code from it."""
+    def load(cls, path: str | os.PathLike[str], file: BinaryIO | None = None) -> Packing:
+        """Read what ``save`` wrote. Raises InputError for a missing, malformed, hostile or newer file; runs no code from it.
+
+        With ``file``, what was read already: ``path`` is then only its name.
+        """
         path = Path(path)
+        source = path if file is None else file
         try:
-            with zipfile.ZipFile(path) as archive:
+            with zipfile.ZipFile(source) as archive:
                 methods = {info.compress_type for info in archive.infolist()}
                 if not methods <= {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
                     raise InputError(f"{path}: not a packing file of this program")
@@ -255,7 +273,9 @@ class Packing:
                     raise InputError(
                         f"{path}: would unpack to {unpacked} bytes, more than any packing needs; not opened"
                     )
-            with np.load(path, allow_pickle=False) as data:
+            if file is not None:
+                file.seek(0)
+            with np.load(source, allow_pickle=False) as data:
                 if str(data["format"]) != FORMAT:
                     raise InputError(f"{path}: not a packing file of this program")
                 version = int(data["version"])

@@ -200,6 +200,11 @@ class Quasistatic:
         """How the increment under way stands, or None."""
         return None if self._relaxation is None else self._relaxation.report()
 
+    @property
+    def relaxation(self) -> Relaxation | None:
+        """The relaxation under way, or None: for studies, that solve it by other means as well."""
+        return self._relaxation
+
     def farthest_move(self) -> float:
         """How far any grain has moved in the latest increment [R]."""
         return float(np.hypot(*self._last[:2]).max(initial=0.0))
@@ -218,6 +223,19 @@ class Quasistatic:
         self._contacts = self.contacts()
         if self.friction is not None:
             self.friction.select(~gone)
+
+    def take_over(self, packing: Packing) -> None:
+        """Go on with other grains, or after bodies have come or gone; ``friction`` knows of both already."""
+        if self._relaxation is not None:
+            raise RuntimeError("grains and bodies cannot change in the middle of an increment")
+        self.packing = packing
+        self._placement = self.world.placement()
+        self._last = np.zeros_like(packing.state)
+        self._own_motion = np.zeros_like(packing.state[:2])
+        self._last_moved = {}
+        _, owner = self.world.primitives()
+        self._contacts = self.contacts()
+        self.reactions = observables.reactions(self._contacts[1], owner, self._placement)
 
     def _step_box(self, target: PeriodicBox | None) -> PeriodicBox | None:
         """The periodic box one step nearer to ``target``."""

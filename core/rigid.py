@@ -38,7 +38,7 @@ class RigidBody:
 
     role: wall, piston, intruder or body. Static unless ``held`` (a hand can drag it anywhere) or ``axis`` (unit vector:
     it slides along that line, and ``travel`` bounds how far from where it stood first [R]). ``force_limit`` [k R]: the
-    hand gives way there.
+    hand gives way there. ``drawn``: a person has drawn this wall; what slides stops at it, and it can be erased.
     """
 
     name: str
@@ -56,6 +56,7 @@ class RigidBody:
     axis: Point | None = None
     travel: tuple[float, float] = (-math.inf, math.inf)
     force_limit: float = 40.0
+    drawn: bool = False
     home: Point = field(init=False)
 
     def __post_init__(self) -> None:
@@ -143,6 +144,15 @@ class RigidWorld:
         """Take a body away."""
         self.bodies.remove(self[name])
 
+    @property
+    def drawn(self) -> tuple[RigidBody, ...]:
+        """The walls that a person has drawn: the last of the bodies, which never move."""
+        return tuple(body for body in self.bodies if body.drawn)
+
+    def redraw(self, walls: Sequence[RigidBody]) -> None:
+        """Let ``walls`` be the drawn ones, in place of those that are."""
+        self.bodies = [*(body for body in self.bodies if not body.drawn), *walls]
+
     def primitives(self) -> tuple[Floats, NDArray[np.int64]]:
         """All primitives (M, 8) and the index of the body that each belongs to (M,)."""
         rows = [body.primitives() for body in self.bodies]
@@ -181,11 +191,13 @@ class RigidWorld:
             wanted *= step / distance
         return self._pull(body, wanted, step, reaction)
 
-    @staticmethod
     def _slide(
-        body: RigidBody, wanted: float, step: float, reaction: Point
+        self, body: RigidBody, wanted: float, step: float, reaction: Point
     ) -> tuple[Point, str | None]:
-        """A kinematic piston: exactly as far as it is told, within its travel, unless the grains push harder than the hand."""
+        """A kinematic piston: exactly as far as it is told, within its travel, unless the grains push harder than the hand.
+
+        Where it would go into a drawn wall, or further into one, it stays.
+        """
         assert body.axis is not None
         axis = np.array(body.axis)
         stood = float(np.dot(np.array(body.position) - body.home, axis))
@@ -196,7 +208,11 @@ class RigidWorld:
         if amount != 0.0 and -push_back * math.copysign(1.0, amount) > body.force_limit:
             return (0.0, 0.0), "force limit"
         dx, dy = amount * float(axis[0]), amount * float(axis[1])
-        body.position = (body.position[0] + dx, body.position[1] + dy)
+        there = (body.position[0] + dx, body.position[1] + dy)
+        walls = self.drawn
+        if walls and depth(body, there, walls) > depth(body, body.position, walls):
+            return (0.0, 0.0), "wall"
+        body.position = there
         return (dx, dy), ("end of travel" if allowed != asked else None)
 
     def _pull(
@@ -240,6 +256,21 @@ class RigidWorld:
         if asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2:
             stopped = "force limit" if too_hard else "wall"
         return (float(moved[0]), float(moved[1])), stopped
+
+
+def depth(body: RigidBody, position: Point, others: Sequence[RigidBody]) -> float:
+    """How deep ``body``, put at ``position``, would sink into one of the others [R]; 0 if it touches none."""
+    space = pymunk.Space()
+    for other in others:
+        fixed = pymunk.Body(body_type=pymunk.Body.STATIC)
+        fixed.position, fixed.angle = other.position, other.angle
+        space.add(fixed, *_shapes(other, fixed))
+    there = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    there.position, there.angle = position, body.angle
+    found = [info for shape in _shapes(body, there) for info in space.shape_query(shape)]
+    return max(
+        (-point.distance for info in found for point in info.contact_point_set.points), default=0.0
+    )
 
 
 def _limit_speed(body: pymunk.Body, reaction: Point, dt: float, step: float) -> None:

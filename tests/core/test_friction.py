@@ -588,3 +588,44 @@ def test_no_contacts(count: int) -> None:
     assert increment.report.reason is StopReason.CONVERGED
     assert engine.friction is not None
     assert engine.friction.remembered() == {}
+
+
+def remembering(keys: list[tuple[int, int]]) -> Friction:
+    """Friction of 4 grains with a memory of (label, primitive) contacts with bodies, of slips 1, 2, …"""
+    friction = Friction(0.5, 4)
+    packed = np.array([label * 2**31 + 2**30 + primitive for label, primitive in keys])
+    friction.remember(np.arange(4.0), packed, np.arange(1.0, len(keys) + 1.0))
+    return friction
+
+
+def test_walls_that_are_taken_away_are_forgotten() -> None:
+    friction = remembering([(0, 0), (0, 2), (0, 5), (1, 1), (1, 3)])
+    friction.forget_primitives(1, 2)
+    assert friction.remembered() == {(0, -1): 1.0, (0, -4): 3.0, (1, -2): 5.0}
+    keys, _ = friction.memory()
+    assert np.all(np.diff(keys) > 0)
+
+
+def test_grains_that_come_have_not_turned() -> None:
+    friction = remembering([])
+    friction.rearrange(np.array([3, 1, -1]))
+    assert friction.spin.tolist() == [3.0, 1.0, 0.0]
+
+
+def test_memory_is_taken_up_only_if_it_is_whole() -> None:
+    friction = remembering([(0, 0), (1, 1)])
+    keys, slips = friction.memory()
+    twin = Friction(0.5, 4)
+    twin.remember(friction.spin, keys, slips)
+    assert twin.hash() == friction.hash()
+    for spin, bad_keys, bad_slips in (
+        (friction.spin[:3], keys, slips),
+        (friction.spin, keys[::-1], slips),
+        (friction.spin, -keys, slips),
+        (friction.spin, keys, slips[:1]),
+        (friction.spin, keys, slips * np.nan),
+        (friction.spin * np.inf, keys, slips),
+    ):
+        with pytest.raises(InputError):
+            twin.remember(spin, bad_keys, bad_slips)
+        assert twin.hash() == friction.hash()

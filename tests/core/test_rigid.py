@@ -302,3 +302,45 @@ def test_where_bodies_go_depends_on_where_they_are(targets: list[Point], restart
     for target in script[start:]:
         second.advance("intruder", target, 0.25, (0.1, -0.2))
     assert np.array_equal(second.placement(), first.placement())
+
+
+# Drawn walls
+
+
+def drawn(name: str, x: float, y: float) -> RigidBody:
+    return RigidBody(name, segments=[(x - 1.0, y, x + 1.0, y, 0.3)], drawn=True)
+
+
+def test_drawn_walls_come_last_and_can_be_exchanged() -> None:
+    world = RigidWorld([piston(), drawn("first", 0.0, 0.0)])
+    first = world.drawn
+    world.redraw([*first, drawn("second", 3.0, 0.0)])
+    assert [body.name for body in world.bodies] == ["piston", "first", "second"]
+    world.redraw(first)
+    assert [body.name for body in world.bodies] == ["piston", "first"]
+    assert world.drawn == first
+
+
+def test_a_piston_stops_at_a_drawn_wall_and_can_be_drawn_back() -> None:
+    world = RigidWorld([piston(), drawn("wall", 2.0, 5.0)])
+    reasons = [world.advance("piston", (0.0, 0.0), 0.25)[1] for _ in range(40)]
+    assert "wall" in reasons
+    # The faces touch at 5.0 + 0.3 + 0.2, within one step.
+    assert 5.5 - 1e-9 <= world["piston"].position[1] <= 5.5 + 0.25
+    moved, why = world.advance("piston", (0.0, 9.0), 0.25)
+    assert (moved, why) == ((0.0, 0.25), None)
+
+
+def test_a_piston_with_a_wall_drawn_through_it_can_only_leave() -> None:
+    world = RigidWorld([piston(), drawn("wall", 2.0, 7.7)])
+    assert world.advance("piston", (0.0, 0.0), 0.1) == ((0.0, 0.0), "wall")
+    moved, _ = world.advance("piston", (0.0, 9.0), 0.1)
+    assert moved == pytest.approx((0.0, 0.1))
+
+
+def test_a_held_body_stops_at_a_drawn_wall() -> None:
+    wall_ahead = RigidBody("wall", segments=[(6.0, -9.0, 6.0, 19.0, 0.3)], drawn=True)
+    world = RigidWorld([intruder(), wall_ahead])
+    for _ in range(80):
+        world.advance("intruder", (20.0, 5.0), 0.1)
+    assert world["intruder"].position[0] < 6.0 - 0.3 - 1.5 + SUBSTEP
