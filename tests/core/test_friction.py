@@ -623,8 +623,8 @@ def test_memory_is_taken_up_only_if_it_is_whole() -> None:
         (friction.spin, keys[::-1], slips),
         (friction.spin, -keys, slips),
         (friction.spin, keys, slips[:1]),
-        (friction.spin, keys, slips * np.nan),
-        (friction.spin * np.inf, keys, slips),
+        (friction.spin, keys, np.full(2, np.nan)),
+        (np.full(4, np.inf), keys, slips),
     ):
         with pytest.raises(InputError):
             twin.remember(spin, bad_keys, bad_slips)
