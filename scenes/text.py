@@ -37,3 +37,9 @@ class _Filler(string.Formatter):
         if isinstance(value, (int, float)):
             text = text.replace("-", "−").replace(".", self._decimal)
         return text
+
+
+def message(error: Exception) -> str:
+    """What an error says, as it was given: a ``Text`` stays one."""
+    given = error.args[0] if error.args else ""
+    return given if isinstance(given, str) else str(error)

@@ -1,4 +1,4 @@
-"""Pages drawn over the picture: the scene menu, the keys, and a message after an error."""
+"""Pages drawn over the picture: the scene menu, and a message after an error."""
 
 from __future__ import annotations
 
@@ -221,38 +221,6 @@ def page_painter(painter: Painter, designed: tuple[int, int] = (480, 360)) -> Pa
     return Painter(painter.surface, painter.theme, Type(scale))
 
 
-def draw_help(painter: Painter) -> pygame.Rect:
-    """All keys on one page; returns the card."""
-    size = painter.surface.get_size()
-    painter = page_painter(painter, (540, 400))
-    theme, type_, scale = painter.theme, painter.type, painter.scale
-    columns = 1 if size[1] > 560 * scale else 2
-    rows = -(-len(words.HELP) // columns)
-    keys = max(type_.width(key, BODY, bold=True) for key, _ in words.HELP) + round(18 * scale)
-    meanings = max(type_.width(meaning, BODY) for _, meaning in words.HELP)
-    gap = round(30 * scale)
-    line = type_.height(BODY) + round(5 * scale)
-    pad = min(round(24 * scale), size[1] // 16)
-    head = type_.height(HEADING, bold=True) + round(8 * scale)
-    width = min(columns * (keys + meanings) + (columns - 1) * gap + 2 * pad, size[0])
-    card = pygame.Rect(0, 0, width, min(head + rows * line + 2 * pad, size[1]))
-    card.center = (size[0] // 2, size[1] // 2)
-    _veil(painter)
-    painter.box(card, theme.panel, radius=12.0 * scale, edge=theme.hairline, edge_width=1.5 * scale)
-    painter.text(
-        words.HELP_TITLE, card.left + pad, card.top + pad + head // 2, size=HEADING, bold=True
-    )
-    step = (card.width - 2 * pad + gap) // columns
-    for index, (key, meaning) in enumerate(words.HELP):
-        x = card.left + pad + (index // rows) * step
-        y = card.top + pad + head + (index % rows) * line + line // 2
-        painter.text(key, x, y, bold=True)
-        room = min(step - gap, card.right - pad - x) - keys
-        painter.text(type_.shortened(meaning, BODY, room), x + keys, y, colour=theme.soft_text)
-    painter.flush()
-    return card
-
-
 def draw_error(painter: Painter, message: str) -> pygame.Rect:
     """What went wrong, in plain words, and what to do; returns the card."""
     size = painter.surface.get_size()
@@ -269,7 +237,7 @@ def draw_error(painter: Painter, message: str) -> pygame.Rect:
     height = min(head + (len(lines) + len(advice)) * body + 4 * pad, size[1])
     card = pygame.Rect(0, 0, width, height)
     card.center = (size[0] // 2, size[1] // 2)
-    _veil(painter)
+    veil(painter)
     painter.box(card, theme.panel, radius=12.0 * scale, edge=theme.bad, edge_width=2.0 * scale)
     x, y = card.left + pad, card.top + pad + head // 2
     title = type_.shortened(words.ERROR_TITLE, HEADING, room, bold=True)
@@ -286,5 +254,6 @@ def draw_error(painter: Painter, message: str) -> pygame.Rect:
     return card
 
 
-def _veil(painter: Painter) -> None:
+def veil(painter: Painter) -> None:
+    """Cover the picture behind a page, not quite."""
     painter.box(painter.everything, painter.theme.ground, alpha=VEIL)

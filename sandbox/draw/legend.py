@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +44,8 @@ def draw_header(
     painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
     pad, gap = round(14 * scale), round(26 * scale)
     left, right = rect.left + pad, rect.right - pad
-    title = type_.width(frame.title, HEADING, bold=True)
+    name = words.title(frame.scene, frame.title)
+    title = type_.width(name, HEADING, bold=True)
 
     choices, enough = _choices(painter, frame, look, chain_top)
     widths = [sum(part.width + gap for part in parts) for parts in choices]
@@ -58,7 +59,7 @@ def draw_header(
             x -= part.width
             part.draw(x, rect.centery)
             x -= gap
-    shown = type_.shortened(frame.title, HEADING, x - left, bold=True)
+    shown = type_.shortened(name, HEADING, x - left, bold=True)
     painter.text(shown, left, rect.centery, size=HEADING, bold=True)
 
 
@@ -90,7 +91,7 @@ def _name(painter: Painter, text: str) -> Part:
     return Part(painter.type.width(text, SMALL), draw)
 
 
-def _kinds(painter: Painter, frame: Frame, look: Look, names: dict[str, str]) -> list[Part]:
+def _kinds(painter: Painter, frame: Frame, look: Look, names: Mapping[str, str]) -> list[Part]:
     """Grains as on the canvas, each with its name."""
     auxetic = int(np.count_nonzero(frame.auxetic))
     kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]

@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sandbox.language import decimal_sign
+
 MINUS = "−"
 ONE_TWO_FIVE = (1.0, 2.0, 5.0, 10.0)
 FINER = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
@@ -41,19 +43,19 @@ def decimals_for(step: float) -> int:
 
 
 def number(value: float, decimals: int) -> str:
-    """A number with a true minus sign, and no minus on zero."""
+    """A number as the present language writes it, with a true minus sign, and no minus on zero."""
     if not math.isfinite(value):
         return "—"
     text = f"{value:.{decimals}f}"
     if float(text) == 0.0:
         text = text.lstrip("-")
-    return text.replace("-", MINUS)
+    return text.replace("-", MINUS).replace(".", decimal_sign())
 
 
 def percent(share: float) -> str:
     """An upper bound in words: 0.008 -> '1 %', 0.0004 -> '0.05 %'."""
     bound = 100.0 * nice_ceiling(share)
-    return f"{bound:.{decimals_for(bound)}f} %"
+    return f"{number(bound, decimals_for(bound))} %"
 
 
 class RoundScale:

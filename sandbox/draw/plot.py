@@ -9,10 +9,10 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from sandbox.draw import words
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, SMALL
-from sandbox.draw.words import NO_CURVE, STROKE_AXIS
 
 Floats = NDArray[np.float64]
 
@@ -94,9 +94,12 @@ def draw_plot(
     rect: pygame.Rect,
     curves: Sequence[Curve],
     label: str,
-    stroke_label: str = STROKE_AXIS,
+    stroke_label: str = "",
 ) -> None:
-    """Axes, curves, the last point of the first curve with its number."""
+    """Axes, curves, the last point of the first curve with its number.
+
+    Labels are in the present language already.
+    """
     if rect.height <= 0 or rect.width <= 0:
         return
     scale, theme, type_ = painter.scale, painter.theme, painter.type
@@ -138,10 +141,10 @@ def draw_plot(
     )
     if box.rect.width < 10 or box.rect.height < 10:
         return
-    _draw_axes(painter, box, force_ticks, names, stroke_label)
+    _draw_axes(painter, box, force_ticks, names, stroke_label or words.STROKE_AXIS)
     if not current:
         painter.text(
-            NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
+            words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
         )
         return
     inside = box.rect.inflate(round(12 * scale), round(12 * scale))

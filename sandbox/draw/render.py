@@ -10,6 +10,7 @@ import pygame
 import pygame.surfarray
 from numpy.typing import NDArray
 
+from sandbox.draw import words
 from sandbox.draw.camera import Camera
 from sandbox.draw.layout import Layout, layout
 from sandbox.draw.legend import draw_header
@@ -134,9 +135,10 @@ class Renderer:
         draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)
         draw_header(painter, places.header, frame, look, chain_top)
         curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
-        draw_plot(painter, places.plot, [curve], frame.curve_label, frame.stroke_label)
+        labels = words.say(frame.curve_label), words.say(frame.stroke_label)
+        draw_plot(painter, places.plot, [curve], *labels)
         draw_status(painter, places.status, frame, rate=rate, paused=paused)
-        self._draw_notices(painter, (*frame.notices, *notices))
+        self._draw_notices(painter, (*map(words.say, frame.notices), *notices))
         painter.flush()
         return self.surface
 

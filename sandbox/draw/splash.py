@@ -26,8 +26,6 @@ def draw_splash(
     text: str,
     fraction: float,
     seconds: float,
-    title: str = words.SPLASH_TITLE,
-    about: str = words.SPLASH_ABOUT,
 ) -> None:
     """Title, the squeezed pair, a progress bar with what is going on, one sentence."""
     width, height = surface.get_size()
@@ -35,7 +33,7 @@ def draw_splash(
     type_ = type_ if scale == type_.scale else Type(scale)
     surface.fill(channels(theme.ground))
     room = width - round(40 * scale)
-    lines = type_.wrapped(about, BODY, min(room, round(560 * scale)))
+    lines = type_.wrapped(words.SPLASH_ABOUT, BODY, min(room, round(560 * scale)))
     line = type_.height(BODY)
     head = type_.height(TITLE, bold=True)
     bar = max(round(8 * scale), 4)
@@ -56,7 +54,7 @@ def draw_splash(
         surface.blit(shown, ((width - shown.get_width()) // 2, y))
         y += shown.get_height()
 
-    write(title, TITLE, theme.text, bold=True)
+    write(words.SPLASH_TITLE, TITLE, theme.text, bold=True)
     y += round(16 * scale)
     length = min(round(420 * scale), room)
     track = pygame.Rect((width - length) // 2, y, length, bar)

@@ -75,7 +75,7 @@ def draw_status(
     lamp_space = round(2 * lamp_radius + 8 * scale)
 
     items = [
-        _Item(frame.scene.replace("_", " "), 2),
+        _Item(words.title(frame.scene, frame.scene.replace("_", " ")), 2),
         _Item(words.PACKINGS.get(frame.packing, frame.packing), 4),
         _Item(words.SEED.format(seed=frame.seed), 1),
         _Item(
@@ -85,7 +85,11 @@ def draw_status(
         ),
     ]
     if frame.grains_out:
-        items.append(_Item(words.GRAINS_OUT.format(count=frame.grains_out), 5, "000 out"))
+        items.append(_Item(
+                words.GRAINS_OUT.format(count=frame.grains_out),
+                5,
+                words.GRAINS_OUT.format(count="000"),
+            ))
     if frame.protocol:
         items.append(_Item(words.DRIVE, 2))
     if paused:

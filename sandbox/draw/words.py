@@ -1,96 +1,106 @@
-"""Every word that is drawn, in one place: short, plain, sentence case."""
+"""Every word that is drawn, in the present language.
+
+``words.HINT`` is what the tables in sandbox/languages have under ``[words] hint``, looked up when it is asked for: never
+import a word by its name, the language can change at any moment. New words go into every table.
+"""
 
 from __future__ import annotations
 
-KINDS = {"regular": "regular: bulges", "auxetic": "auxetic: shrinks"}
-KINDS_SHORT = {"regular": "regular", "auxetic": "auxetic"}
+from sandbox import language
+from sandbox.language import Section, decimal_sign, say
 
-# Ways to look at the grains: the names for the command line, and what the legend says.
-VIEWS = {
-    "kind": "kinds",
-    "skin": "as made",
-    "pressure": "pressure",
-    "shape": "shape change (a − b)/(a + b)",
-    "area": "area lost",
-    "motion": "motion against the mean",
-    "chains": "force chains",
-    "fringes": "stress fringes",
-}
+__all__ = [
+    "BROKEN",
+    "FORCE_UNIT",
+    "KINDS",
+    "KINDS_SHORT",
+    "LENGTH_UNIT",
+    "PACKINGS",
+    "PERCENT",
+    "STOPPED",
+    "STRESS_UNIT",
+    "VIEWS",
+    "Section",
+    "about",
+    "decimal_sign",
+    "help_groups",
+    "parameter_help",
+    "parameter_name",
+    "question",
+    "say",
+    "title",
+    "unit",
+]
 
-VIEW = "view: {view}"
-
-SETTLED = "settled"
-SETTLING = "settling"
-STOPPED = {
-    "converged": SETTLED,
-    "budget": "time used up, not settled",
-    "iteration limit": "iteration limit, not settled",
-    "not finite": "numbers went bad: press R to reset",
-    "collapsed": "a grain was crushed flat: press R to reset",
-}
-BROKEN = frozenset({"not finite", "collapsed"})
-FORCE_ERROR = "forces balance within {error}"
-NO_FORCES = "no forces"
-UNKNOWN_FORCES = "forces not known yet"
-
-SEED = "seed {seed}"
-INCREMENT = "increment {increment}"
-RATE = "{fps:.0f} frames/s · {ms:.0f} ms"
-RATE_SLOW = "{fps:.0f} frames/s · {reason}"
-SLOW_DRAWING = "drawing takes {ms:.0f} ms"
-SLOW_MACHINE = "the computer is busy"
-PAUSED = "paused"
-DRIVE = "scripted drive"
-GRAINS_OUT = "{count} out"
-
-CHAINS = "force chains"
+# Signs, not words: the same in every language.
 FORCE_UNIT = "k R"
 STRESS_UNIT = "k"
 LENGTH_UNIT = "R"
 PERCENT = "%"
-STROKE_AXIS = "stroke [R]"
-NO_CURVE = "nothing has moved yet"
 
-HINT = "Drag the orange handle · A lets it move by itself · H shows all keys"
+BROKEN = frozenset({"not finite", "collapsed"})  # ends of a relaxation that leave no picture to believe
 
-SPLASH_TITLE = "Auxetic sandbox"
-SPLASH_STEP = "preparing"
-SPLASH_ABOUT = "Squeezed grains: regular ones bulge, auxetic ones shrink."
-BUILDING = "{text} · {percent:.0f} %"
+KINDS = Section("kinds")
+KINDS_SHORT = Section("kinds_short")
+PACKINGS = Section("packings")
+STOPPED = Section("stopped")
+VIEWS = Section("views")
 
-MENU_TITLE = "Choose a scene"
-MENU_KEYS = "Arrow keys and Enter, or click   ·   1 2 3 packing   ·   T theme   ·   Esc quit"
 
-ERROR_TITLE = "This run has stopped"
-ERROR_ADVICE = "R: start this scene again · M: scene menu · Esc: quit"
+def __getattr__(name: str) -> str:
+    found = language.find("words", name.lower()) if name.isupper() else None
+    if found is None:
+        raise AttributeError(f"no language has a word {name}")
+    return str(found)
 
-HELP_TITLE = "Keys"
-HELP = (
-    ("Mouse", "drag a handle"),
-    ("Space", "pause"),
-    ("S, →", "one increment"),
-    ("R", "reset"),
-    ("1  2  3", "packing"),
-    ("P", "next packing"),
-    ("N", "new seed"),
-    ("A", "scripted drive"),
-    ("V", "next view"),
-    ("F", "force chains"),
-    ("M, Tab", "scene menu"),
-    ("T", "dark or light"),
-    ("+  −", "text size"),
-    ("F12", "screenshot"),
-    ("H, F1", "this page"),
-    ("Esc", "back, then quit"),
-)
 
-SAVED = "saved {name}"
-NOT_SAVED = "could not save {name}: {reason}"
-NEW_SEED = "new seed: {seed}"
-NEW_PACKING = "{packing} grains"
-ONLY_CHAINS = "this view is the force chains"
-CHAINS_ON = "force chains on"
-CHAINS_OFF = "force chains off"
-DRIVE_ON = "scripted drive on"
-DRIVE_OFF = "scripted drive off: the hand is yours"
-PACKINGS = {"regular": "regular", "auxetic": "auxetic", "mixed": "mixed"}
+def title(scene: str, own: str = "") -> str:
+    """The title of a scene, unless it has been given a title of its ``own`` that no table knows."""
+    return own if own and own != _source(scene) else _of_scene(scene, "title", own)
+
+
+def question(scene: str, own: str = "") -> str:
+    """The question that a scene answers."""
+    return _of_scene(scene, "question", own)
+
+
+def about(scene: str, own: str = "") -> str:
+    """A sentence or two about a scene."""
+    return _of_scene(scene, "about", own)
+
+
+def _source(scene: str) -> str:
+    """The title of a scene in English, as the program has it too."""
+    known = language.table(language.SOURCE)["scenes"].get(scene, {})
+    return str(known.get("title", ""))
+
+
+def _of_scene(scene: str, key: str, own: str) -> str:
+    found = language.find("scenes", scene, key)
+    return own if found is None else str(found)
+
+
+def parameter_name(parameter: str) -> str:
+    """A parameter's name in plain words."""
+    found = language.find("parameters", parameter)
+    return parameter.replace("_", " ") if found is None else str(found)
+
+
+def parameter_help(scene: str, parameter: str, own: str = "") -> str:
+    """One line about a parameter of a scene; ``own`` is for one that no table knows."""
+    found = language.find("scenes", scene, "help", parameter)
+    if found is None:
+        found = language.find("parameter_help", parameter)
+    return own if found is None else str(found)
+
+
+def unit(unit: str) -> str:
+    """A unit as it is written: signs stay, "deg" and "diameters" are words."""
+    found = language.find("units", unit)
+    return unit if found is None else str(found)
+
+
+def help_groups() -> list[tuple[str, list[tuple[str, str]]]]:
+    """The help page: titles, each with its keys and what they do."""
+    groups = language.find("help")
+    return [(group["title"], [(key, does) for key, does in group["keys"]]) for group in groups]

@@ -12,9 +12,10 @@ from collections.abc import Mapping
 import pygame
 
 from core.errors import InputError
+from sandbox import language
 from sandbox.commands import Command
 from sandbox.draw import words
-from sandbox.draw.cards import MenuEntry, draw_error, draw_help
+from sandbox.draw.cards import MenuEntry, draw_error
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
 from sandbox.draw.views import view_after
@@ -22,11 +23,13 @@ from sandbox.draw.warmup import Warmup
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
 from sandbox.views.window_hand import REACH, Mouse
+from sandbox.views.window_help import HelpPage
 from sandbox.views.window_keys import Action, action_of, packing_for
 from sandbox.views.window_menu import Choice, Menu
 from sandbox.views.window_parts import Part
 from sandbox.views.window_run import Run
 from scenes import registry
+from scenes.text import message
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
 TOAST = 2.5  # how long the window's own notices stay [s]
@@ -90,6 +93,7 @@ class App:
         self.running = True
         self.show_menu = False
         self.show_help = False
+        self.help = HelpPage()
         self.mouse = Mouse()
         self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.screen = open_display(size)
@@ -170,7 +174,7 @@ class App:
                 self.renderer.surface,
                 self.renderer.theme,
                 self.renderer.type,
-                text=_sentence(snapshot.text or words.SPLASH_STEP),
+                text=_sentence(words.say(snapshot.text) or words.SPLASH_STEP),
                 fraction=snapshot.fraction,
                 seconds=now - self._begun,
             )
@@ -199,14 +203,14 @@ class App:
             part.draw(painter)
         painter.flush()
         if snapshot.phase == "failed":
-            draw_error(self.renderer.painter(), snapshot.error)
+            draw_error(self.renderer.painter(), words.say(snapshot.error))
         if self.show_help:
-            draw_help(self.renderer.painter())
+            self.help.draw(self.renderer.painter())
 
     def _notices(self, snapshot: Snapshot) -> tuple[str, ...]:
         notices = [text for _, text in self._toasts]
         if snapshot.phase == "building":
-            text = _sentence(snapshot.text or words.SPLASH_STEP)
+            text = _sentence(words.say(snapshot.text) or words.SPLASH_STEP)
             if math.isfinite(snapshot.fraction):
                 text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
             notices.append(text)
@@ -252,8 +256,9 @@ class App:
                 self.show_help = event.type != pygame.MOUSEBUTTONDOWN
             else:
                 self._mouse_on_canvas(event)
-        elif event.type == pygame.MOUSEWHEEL and self.show_menu:
-            self.menu.wheel(event.precise_y, round(60 * self.renderer.scale))
+        elif event.type == pygame.MOUSEWHEEL and (self.show_menu or self.show_help):
+            page = self.menu if self.show_menu else self.help
+            page.wheel(event.precise_y, round(60 * self.renderer.scale))
         elif event.type == pygame.WINDOWFOCUSLOST:
             self.mouse.release(self.send)
         elif event.type not in (pygame.WINDOWEXPOSED, pygame.WINDOWFOCUSGAINED):
@@ -293,12 +298,17 @@ class App:
             self.toast(save_picture(self.renderer.surface, f"sandbox{name}"))
         elif action is Action.THEME:
             self.renderer.set_theme("light" if self.renderer.theme.name == "dark" else "dark")
+        elif action is Action.LANGUAGE:
+            self._speak(language.after(language.present()))
         elif action in (Action.LARGER, Action.SMALLER):
             self._rescale(1 if action is Action.LARGER else -1)
         elif self.show_menu:
             self._act_in_menu(action)
         elif action is Action.HELP or (action is Action.BACK and self.show_help):
             self.show_help = not self.show_help
+            self.help.scroll = 0
+        elif self.show_help and self.help.act(action, round(60 * self.renderer.scale)):
+            pass
         elif action in (Action.MENU, Action.BACK):
             self.open_menu()
         elif self.run.snapshot.phase == "failed":
@@ -380,7 +390,12 @@ class App:
             try:
                 self.start(choice.scene)
             except InputError as error:
-                self.toast(str(error))
+                self.toast(words.say(message(error)))
+
+    def _speak(self, code: str) -> None:
+        language.use(code)
+        pygame.display.set_caption(words.SPLASH_TITLE)
+        self.toast(words.NEW_LANGUAGE.format(language=language.find("name")))
 
     def _forget_picture(self) -> None:
         self.mouse.forget()

@@ -25,6 +25,7 @@ class Action(enum.Enum):
     CHAINS = enum.auto()
     HELP = enum.auto()
     THEME = enum.auto()
+    LANGUAGE = enum.auto()
     LARGER = enum.auto()
     SMALLER = enum.auto()
     SCREENSHOT = enum.auto()
@@ -54,6 +55,7 @@ _SIGNS = {
     "h": Action.HELP,
     "?": Action.HELP,
     "t": Action.THEME,
+    "l": Action.LANGUAGE,
     "+": Action.LARGER,
     "=": Action.LARGER,
     "-": Action.SMALLER,

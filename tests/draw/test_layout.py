@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sandbox.draw.camera import Camera
-from sandbox.draw.cards import MenuEntry, draw_error, draw_help, draw_menu, menu_layout
+from sandbox.draw.cards import MenuEntry, draw_error, draw_menu, menu_layout
+from sandbox.draw.help_page import draw_help
 from sandbox.draw.layout import SEAM, layout
 from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
@@ -123,7 +124,7 @@ def test_pages_fit_the_window(
         for first, second in combinations((places.title, *places.chips), 2):
             assert not first.colliderect(second)
     elif page == "help":
-        assert window.contains(draw_help(painter))
+        assert window.contains(draw_help(painter).card)
         check(texts, window)
         assert not any("…" in text for text, _ in texts)
     else:

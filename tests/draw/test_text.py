@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.draw import text, words
+from sandbox import language
+from sandbox.draw import text
 from sandbox.draw.text import BODY, SMALL, Type, font_path, page_scale
 
 
@@ -42,7 +43,8 @@ def test_every_sign_that_is_written_is_in_the_font() -> None:
     import pygame.font
 
     pygame.font.init()
-    written = {sign for value in vars(words).values() for sign in str(value)} | set("−—…νφ°²·")
+    tables = (str(language.table(code)) for code in language.available())
+    written = {sign for table in tables for sign in table} | set("−—…νφ°²·")
     for bold in (False, True):
         font = pygame.font.Font(str(font_path(bold)), 16)
         missing = [
