@@ -17,16 +17,18 @@ from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 from core.errors import InputError
-from sandbox.commands import Change, Command, Move, Reset
+from sandbox.commands import Command
 from sandbox.frame import Frame
+from sandbox.views.conductor import Conductor, Turn
 
 log = logging.getLogger(__name__)
 
-SLICE = 200  # iterations of the minimiser between two looks at the mailbox
+SLICE = 200  # iterations of the minimiser between two looks at whether to end
+CANCELLED = "cancelled: everything is as it was before"
 PICTURE = 1.0 / 90.0  # pictures of an unfinished increment are taken no more often than this [s]
 
 Progress = Callable[[str, float], None]
-Phase = Literal["building", "running", "failed", "stopped"]
+Phase = Literal["building", "catching up", "running", "failed", "stopped"]
 
 
 class SessionLike(Protocol):
@@ -59,7 +61,7 @@ class Snapshot:
 
     phase: Phase
     text: str = ""  # what is being built
-    fraction: float = math.nan  # how much of that is done, 0 to 1; nan: nobody knows
+    fraction: float = math.nan  # how much of that is done, or caught up, 0 to 1; nan: nobody knows
     frame: Frame | None = None  # the latest picture; kept through a rebuild and a failure
     error: str = ""  # plain words, when failed
     serial: int = 0  # counts publications
@@ -70,15 +72,16 @@ class _Stopped(Exception):
 
 
 class SolverThread:
-    """Runs a session until stopped."""
+    """Runs a session until stopped, alone or in step with others."""
 
-    def __init__(self, session: SessionLike, *, paused: bool = False) -> None:
+    def __init__(
+        self, session: SessionLike, *, paused: bool = False, conductor: Conductor | None = None
+    ) -> None:
         self._session = session
-        self._mail: list[Command] = []
-        self._paused = paused
-        self._steps = 0
-        self._stop = False
-        self._changed = threading.Condition()
+        self._conductor = Conductor(paused=paused) if conductor is None else conductor
+        self._member = self._conductor.join()
+        self._built = False
+        self._cancel = False
         self._snapshot = Snapshot("building")
         self._pictured = 0.0
         self._patience = 0.0  # with the increment at work when it is time to end [s]
@@ -99,57 +102,46 @@ class SolverThread:
     @property
     def paused(self) -> bool:
         """Is the solver held?"""
-        return self._paused
+        return self._conductor.paused
 
     def submit(self, command: Command) -> None:
-        """Send a command. Of moves that nothing has come between only the latest counts."""
-        with self._changed:
-            last = self._mail[-1] if self._mail else None
-            if (
-                isinstance(command, Move)
-                and isinstance(last, Move)
-                and command.handle == last.handle
-            ):
-                self._mail[-1] = command
-            else:
-                self._mail.append(command)
-            self._changed.notify()
+        """Send a command, to those in step with this one too."""
+        self._conductor.submit(command)
 
     def pause(self, on: bool) -> None:
         """Hold after the increment at work, or go on."""
-        with self._changed:
-            self._paused = on
-            self._steps = 0
-            self._changed.notify()
+        self._conductor.pause(on)
 
     def step(self) -> None:
         """Hold, but do one more increment."""
-        with self._changed:
-            self._paused = True
-            self._steps += 1
-            self._changed.notify()
+        self._conductor.step()
+
+    def cancel(self) -> None:
+        """Break a build off: the first ends the thread, a later one leaves everything as it was."""
+        self._cancel = True
 
     def stop(self, timeout: float = 5.0) -> bool:
         """End the thread; True when it has ended, after which its session may be used."""
-        with self._changed:
-            self._stop = True
-            self._patience = 0.8 * timeout
-            self._changed.notify()
+        self._patience = 0.8 * timeout
+        self._conductor.stop(self._member)
         if self._thread.is_alive():
             self._thread.join(timeout)
+        else:
+            self._conductor.leave(self._member)
         return not self._thread.is_alive()
 
     # What the thread does.
 
     def _run(self) -> None:
         try:
-            self._session.build(self._report)
-            self._publish("running")
-            while self._wait():
-                self._work()
+            self._build()
+            advanced = False
+            while (turn := self._next_turn(advanced)) is not None:
+                advanced = self._work(turn)
             self._finish()
         except _Stopped:
-            pass
+            now = self._snapshot
+            self._snapshot = replace(now, phase="stopped", serial=now.serial + 1)
         except InputError as error:
             self._fail(str(error))
         except Exception as error:
@@ -157,11 +149,21 @@ class SolverThread:
             self._fail(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)
         else:
             self._publish("stopped")
+        finally:
+            self._conductor.leave(self._member)
+
+    def _build(self) -> None:
+        self._session.build(self._report)
+        self._built = True
+        self._publish()
 
     def _report(self, text: str, fraction: float) -> None:
         """Progress of a build; also the place where a build can be broken off."""
-        if self._stop:
+        if self._member.stopping or (self._cancel and not self._built):
             raise _Stopped
+        if self._cancel:
+            self._cancel = False
+            raise InputError(CANCELLED)
         now = self._snapshot
         self._snapshot = Snapshot("building", text, fraction, now.frame, "", now.serial + 1)
 
@@ -171,47 +173,36 @@ class SolverThread:
         now = self._snapshot
         self._snapshot = replace(now, phase="failed", error=message, serial=now.serial + 1)
 
-    def _publish(self, phase: Phase) -> None:
+    def _publish(self, phase: Phase | None = None) -> None:
+        """A picture of the state; without a phase: running, or catching up with the others."""
+        share = self._member.caught_up
+        if phase is None:
+            phase = "running" if share == 1.0 else "catching up"
         frame = self._session.frame()
-        self._snapshot = Snapshot(phase, frame=frame, serial=self._snapshot.serial + 1)
+        self._snapshot = Snapshot(phase, "", share, frame, serial=self._snapshot.serial + 1)
         self._pictured = time.perf_counter()
 
-    def _wait(self) -> bool:
-        """Sleep until there is something to do; False when it is time to end."""
-        with self._changed:
-            while not (self._stop or self._due()):
-                self._changed.wait()
-            return not self._stop
+    def _next_turn(self, advanced: bool) -> Turn | None:
+        """Sleep until there is something to do; None when it is time to end."""
+        wants = not self._session.idle
+        return self._conductor.next_turn(self._member, wants=wants, advanced=advanced)
+
+    def _work(self, turn: Turn) -> bool:
+        """Deliver the commands and relax one increment, if there is one; True if it was finished."""
+        self._cancel = False
+        for command in turn:
+            self._session.submit(command)
+        finished = self._session.advance(SLICE)
+        while self._session.busy and not self._member.stopping:
+            if time.perf_counter() - self._pictured >= PICTURE:
+                self._publish()
+            finished = self._session.advance(SLICE)
+        if not self._member.missed or time.perf_counter() - self._pictured >= PICTURE:
+            self._publish()
+        return finished
 
     def _finish(self) -> None:
         """Bring the increment at work to its end: a log ends between increments."""
         end = time.perf_counter() + self._patience
         while self._session.busy and time.perf_counter() < end:
             self._session.advance(SLICE)
-
-    def _due(self) -> bool:
-        if self._session.busy or any(
-            isinstance(command, (Reset, Change)) for command in self._mail
-        ):
-            return True
-        if self._paused and not self._steps:
-            return False
-        if not self._mail and self._session.idle:
-            self._steps = 0  # a step with nothing to do is done
-            return False
-        return True
-
-    def _work(self) -> None:
-        """Deliver the mail and do a slice of work."""
-        with self._changed:
-            mail, self._mail = self._mail, []
-        for command in mail:
-            if isinstance(command, Change):
-                self._report("", math.nan)  # it is built anew, which takes a moment
-            self._session.submit(command)
-        finished = self._session.advance(SLICE)
-        if finished:
-            with self._changed:
-                self._steps = max(self._steps - 1, 0)
-        if not self._session.busy or time.perf_counter() - self._pictured >= PICTURE:
-            self._publish("running")
