@@ -168,7 +168,8 @@ class Conductor:
         now = time.perf_counter()
         if now < self._due and not at_once and not self._steps:
             return self._due - now
-        self._due = max(self._due + self._pause, now)
+        late = now - self._due  # made up for, as long as it is not a whole turn
+        self._due = (self._due if late < self._pause else now) + self._pause
         self._commands, self._mail = tuple(self._mail), []
         self._remember(self._commands)
         self._turn += 1
