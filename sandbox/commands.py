@@ -7,11 +7,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass, fields
-from typing import Any
+from typing import Any, TypeGuard, get_args
 
 from core.errors import InputError
 
 Scalar = float | int | bool | str
+KINDS = ("regular", "auxetic")  # of grains
+WIDEST = 100.0  # [R] radius of a brush
+MOST_POINTS = 4000  # of a drawn line
 
 
 @dataclass(frozen=True)
@@ -80,11 +83,52 @@ class Redo:
     """Take the last undo back."""
 
 
-Command = Grab | Move | Release | Reset | Change | Protocol | Recall | Undo | Redo
-_BY_NAME: dict[str, type] = {
-    c.__name__.lower(): c
-    for c in (Grab, Move, Release, Reset, Change, Protocol, Recall, Undo, Redo)
-}
+@dataclass(frozen=True)
+class Place:
+    """Put a grain of ``kind``, "regular" or "auxetic", at (x, y) [R], or near it where there is more room."""
+
+    x: float
+    y: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class Erase:
+    """Take away the grains whose centres are within ``radius`` of (x, y) [R], and the one that lies there."""
+
+    x: float
+    y: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Retype:
+    """Make those grains the kind "regular" or "auxetic"."""
+
+    x: float
+    y: float
+    radius: float
+    kind: str
+
+
+@dataclass(frozen=True)
+class DrawWall:
+    """Draw a wall along a line through ``points`` [R]; one that is as good as a point is a peg."""
+
+    points: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class EraseWall:
+    """Take away the drawn wall nearest to (x, y) [R]."""
+
+    x: float
+    y: float
+
+
+Edit = Place | Erase | Retype | DrawWall | EraseWall
+Command = Grab | Move | Release | Reset | Change | Protocol | Recall | Undo | Redo | Edit
+_BY_NAME: dict[str, type] = {kind.__name__.lower(): kind for kind in get_args(Command)}
 
 
 def to_data(command: Command) -> dict[str, Any]:
@@ -105,13 +149,22 @@ def from_data(data: dict[str, Any]) -> Command:
         )
     for name, value in given.items():
         if name in ("x", "y"):
-            if (
-                isinstance(value, bool)
-                or not isinstance(value, (int, float))
-                or not math.isfinite(value)
-            ):
+            if not _finite(value):
                 raise InputError(f"command {data['command']!r}: {name} must be a finite number")
             given[name] = float(value)
+        elif name == "radius":
+            if not (_finite(value) and 0.0 <= value <= WIDEST):
+                raise InputError(
+                    f"command {data['command']!r}: radius must be a number from 0 to {WIDEST:g}"
+                )
+            given[name] = float(value)
+        elif name == "kind":
+            if value not in KINDS:
+                raise InputError(
+                    f"command {data['command']!r}: kind must be one of {', '.join(KINDS)}"
+                )
+        elif name == "points":
+            given[name] = _line(value)
         elif name == "increment":
             if isinstance(value, bool) or not isinstance(value, int) or value < 0:
                 raise InputError("command 'recall': increment must be a whole number from 0 on")
@@ -125,3 +178,22 @@ def from_data(data: dict[str, Any]) -> Command:
             raise InputError(f"command {data['command']!r}: {name} must be a word")
     command: Command = kind(**given)
     return command
+
+
+def _line(value: object) -> tuple[tuple[float, float], ...]:
+    """The points of a drawn line. Raises InputError unless they are some, not too many, and finite."""
+    if not isinstance(value, (list, tuple)) or not 1 <= len(value) <= MOST_POINTS:
+        raise InputError(f"command 'drawwall': points must be 1 to {MOST_POINTS} pairs of numbers")
+    points = []
+    for point in value:
+        if not (isinstance(point, (list, tuple)) and len(point) == 2 and all(map(_finite, point))):
+            raise InputError("command 'drawwall': each point must be two finite numbers")
+        points.append((float(point[0]), float(point[1])))
+    return tuple(points)
+
+
+def _finite(value: object) -> TypeGuard[float]:
+    """Is it a number, and not inf or nan?"""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return False
+    return math.isfinite(value)
