@@ -18,10 +18,13 @@ from sandbox.frame import Frame
 from sandbox.history import History, Row
 from sandbox.snapshot import View, take
 from scenes.scene import Check, Handle, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.text import Text
 
 BOX = "box"  # the handle that is no body: the periodic cell
 ARRIVED = 1e-6  # [R] a body this near its target is there
 STUCK = 1e-3  # of a step: a body that moves less than that is stopped
+SQUEEZED_FLAT = "a grain was squeezed flat: back to the state before this step. Draw back, or reset"
+BLEW_UP = "the numbers blew up: back to the state before this step. Draw back, or reset"
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
@@ -193,18 +196,18 @@ class Run:
                 self._blocked.add(name)
             if why == "force limit":
                 limit = self.setup.world[name].force_limit
-                self.notices.append(f"the hand is not stronger than {limit:g} k R: {label} stopped")
+                text = "the hand is not stronger than {limit:g} k R: {label} stopped"
+                self.notices.append(Text(text, limit=limit, label=label))
             elif why == "end of travel":
-                self.notices.append(f"{label}: end of travel")
+                self.notices.append(Text("{label}: end of travel", label=label))
             elif stuck:
-                self.notices.append(f"{label}: stopped by the wall")
+                self.notices.append(Text("{label}: stopped by the wall", label=label))
         reason = increment.report.reason
         if reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
             self._blocked.update(increment.moved, {BOX})
             self._script = None
             flat = reason is StopReason.COLLAPSED
-            what = "a grain was squeezed flat" if flat else "the numbers blew up"
-            self.notices.append(f"{what}: back to the state before this step. Draw back, or reset")
+            self.notices.append(SQUEEZED_FLAT if flat else BLEW_UP)
 
     def _remove_those_gone(self) -> int:
         """How many grains have left by the outlet in this increment."""

@@ -16,6 +16,7 @@ from core.rigid_contacts import DISC
 from sandbox.frame import BodyShape, Contacts, Frame, HandleState
 from sandbox.history import History
 from scenes.scene import Handle, Scene, Setup, Values
+from scenes.text import Text
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ def take(view: View) -> Frame:
         curve_stroke=view.history.curve[0],
         curve_force=view.history.curve[1],
         spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
-        curve_label=f"force on the {view.drive.label} [k R]"
+        curve_label=Text("force on the {label} [k R]", label=view.drive.label)
         if curve is None
         else curve.force_label,
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,

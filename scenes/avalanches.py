@@ -32,6 +32,7 @@ from scenes.scene import (
     recipe,
     solver,
 )
+from scenes.text import Text
 
 LEAST_DROP = 0.005  # of the pressure at the start: smaller falls of the stress are no avalanche
 GRAB = 4.0  # radius of the handle [R]
@@ -57,7 +58,7 @@ class Avalanches(Scene):
     parameters = (
         Parameter("grains", 400, "", 60, 4000, "number of grains, exactly"),
         Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
-        Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive"),
+        Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive", live=True),
         *MATERIAL,
         *SOLVER,
     )
@@ -127,9 +128,11 @@ class Avalanches(Scene):
             return Remarks()
         weight = taking_part(setup.packing, latest.before, latest.now)
         share = participation(weight)
-        text = (
-            f"avalanche: the shear stress fell by {fall:.2g} k, "
-            f"as if {share * len(weight):.0f} of {len(weight)} grains took part"
+        text = Text(
+            "avalanche: the shear stress fell by {fall:.2g} k, as if {count:.0f} of {total} grains took part",
+            fall=float(fall),
+            count=share * len(weight),
+            total=len(weight),
         )
         return Remarks((text,), weight > weight.mean())
 

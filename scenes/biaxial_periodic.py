@@ -28,6 +28,7 @@ from scenes.scene import (
     recipe,
     solver,
 )
+from scenes.text import Text
 
 ONSET = 1e-5  # of C: the pressure that counts as the onset of rigidity
 MOST_STRAIN = 0.5  # volumetric strain at which a hand is stopped
@@ -49,7 +50,15 @@ class BiaxialPeriodic(Scene):
     default_steps = 40
     parameters = (
         Parameter("grains", 500, "", 50, 5000, "number of grains, exactly"),
-        Parameter("strain", 0.1, "", 0.005, 0.4, "volumetric strain −ε_v of the scripted squeeze"),
+        Parameter(
+            "strain",
+            0.1,
+            "",
+            0.005,
+            0.4,
+            "volumetric strain −ε_v of the scripted squeeze",
+            live=True,
+        ),
         *MATERIAL,
         *SOLVER,
     )
@@ -112,7 +121,8 @@ class BiaxialPeriodic(Scene):
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
         del values
         everyone, backbone = observables.coordination(setup.packing, latest.now.grain_contacts)
-        return Remarks((f"{backbone:.2f} contacts a grain, {everyone:.2f} with rattlers",))
+        text = "{backbone:.2f} contacts a grain, {everyone:.2f} with rattlers"
+        return Remarks((Text(text, backbone=backbone, everyone=everyone),))
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _never_floppy(setup, track), _stiffens(track)]

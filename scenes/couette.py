@@ -30,6 +30,7 @@ from scenes.scene import (
     recipe,
     solver,
 )
+from scenes.text import Text
 
 TOOTH = 2.0  # period of the teeth [R]
 TOOTH_DISCS = 4  # in one period
@@ -82,9 +83,9 @@ class Couette(Scene):
             LARGE,
             "0 steady shear; cycles of 1 small (strain 0.002), 2 middle (0.04), 3 large (2.0) amplitude",
         ),
-        Parameter("strain", 1.0, "", 0.01, 20.0, "shear strain of the steady shear"),
-        Parameter("cycles", 2, "", 1, 50, "number of cycles"),
-        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
+        Parameter("strain", 1.0, "", 0.01, 20.0, "shear strain of the steady shear", live=True),
+        Parameter("cycles", 2, "", 1, 50, "number of cycles", live=True),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         *MATERIAL,
         *SOLVER,
     )
@@ -163,14 +164,18 @@ class Couette(Scene):
         top = setup.world["upper plate"]
         return {"upper plate": (top.home[0] + height * _strain(values, increment + 1), top.home[1])}
 
+    def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
+        if int(after["protocol"]) == STEADY:
+            return super().place_in_drive(increment, before, after)
+        return round(increment * _quarter(after) / _quarter(before))
+
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
         width = _cell(values)[1]
         shear, normal = plate_stresses(setup.world, width, latest.now)
         if normal <= 0.0:
             return Remarks(("the grains do not reach from plate to plate: nothing holds",))
-        return Remarks(
-            (f"pressure {normal:.4f} k, shear stress over pressure {shear / normal:+.3f}",)
-        )
+        text = "pressure {normal:.4f} k, shear stress over pressure {ratio:+.3f}"
+        return Remarks((Text(text, normal=normal, ratio=shear / normal),))
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _stresses_agree(setup)]

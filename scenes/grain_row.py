@@ -32,6 +32,7 @@ from scenes.scene import (
     Values,
     solver,
 )
+from scenes.text import Text
 
 WALL = 0.6  # thickness of floor, walls and piston [R]
 LIFT = 0.5  # how far the piston may be drawn up [R]
@@ -55,11 +56,19 @@ class GrainRow(Scene):
             "gap", 0.0, "R", 0.0, 0.5, "room between neighbours, and to the walls, at the start"
         ),
         Parameter(
-            "compression", 0.15, "", 1e-3, 0.35, "largest approach of the piston, in diameters"
+            "compression",
+            0.15,
+            "",
+            1e-3,
+            0.35,
+            "largest approach of the piston, in diameters",
+            live=True,
         ),
-        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         *MATERIAL,
-        Parameter("step", 0.005, "R", 1e-4, 0.05, "longest move of the piston in one increment"),
+        Parameter(
+            "step", 0.005, "R", 1e-4, 0.05, "longest move of the piston in one increment", live=True
+        ),
         Parameter(
             "tolerance",
             1e-5,
@@ -67,6 +76,7 @@ class GrainRow(Scene):
             1e-8,
             0.3,
             "largest residual force over mean contact force at the end of an increment",
+            live=True,
         ),
         Parameter(
             "max_iterations",
@@ -75,6 +85,7 @@ class GrainRow(Scene):
             10,
             1_000_000,
             "force evaluations after which an increment ends unconverged, and says so",
+            live=True,
         ),
     )
 
@@ -135,8 +146,12 @@ class GrainRow(Scene):
         count = len(setup.packing)
         share = sideways(setup.world, latest.now) / (down / count)
         room = free_room(setup)
-        gaps = f"; {room:.2f} R of room beside the grains" if room > 1e-6 else ""
-        return Remarks((f"sideways: {100 * share:.0f} % of the force down on one grain{gaps}",))
+        text = Text("sideways: {share:.0f} % of the force down on one grain", share=100 * share)
+        if room > 1e-6:
+            text = Text(
+                "{sideways}; {room:.2f} R of room beside the grains", sideways=text, room=room
+            )
+        return Remarks((text,))
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _walls_balance(setup), _poisson_effect(setup, track)]

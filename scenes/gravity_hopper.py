@@ -35,6 +35,7 @@ from scenes.scene import (
     recipe,
     solver,
 )
+from scenes.text import Text
 
 DROP = 5.0  # a grain this far below the lips has left [R]
 ROOM = 3.0  # between the grains and the brim at the start [R]
@@ -78,12 +79,20 @@ class GravityHopper(Scene):
         Parameter(
             "tilt", 0.0, "deg", -40.0, 40.0, "tilt of the hopper: turns gravity to the right"
         ),
-        Parameter("gravity", 0.01, "k/R", 0.0005, 0.05, "weight of a large grain over k R"),
         Parameter(
-            "fall", 0.1, "R", 0.01, 0.3, "how far a grain that nothing holds sinks in one increment"
+            "gravity", 0.01, "k/R", 0.0005, 0.05, "weight of a large grain over k R", live=True
         ),
-        Parameter("shake", 0.8, "R", 0.0, SHAKE, "amplitude of the scripted shaking"),
-        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION),
+        Parameter(
+            "fall",
+            0.1,
+            "R",
+            0.01,
+            0.3,
+            "how far a grain that nothing holds sinks in one increment",
+            live=True,
+        ),
+        Parameter("shake", 0.8, "R", 0.0, SHAKE, "amplitude of the scripted shaking", live=True),
+        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
         *MATERIAL,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
@@ -102,8 +111,8 @@ class GravityHopper(Scene):
         shape = Shape(values)
         half_width, neck, lip = shape.half_width, shape.neck, (shape.lip_x, shape.lip_y)
         top = neck + shape.channel
-        tilt, weight = math.radians(float(values["tilt"])), float(values["gravity"])
-        brim = top + ROOM + half_width * abs(math.tan(tilt))
+        gravity, drag = _pull(values)
+        brim = top + ROOM + half_width * abs(math.tan(math.radians(float(values["tilt"]))))
         right: list[Point] = [lip, (half_width, neck), (half_width, brim)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
         full: list[Point] = [
@@ -150,8 +159,8 @@ class GravityHopper(Scene):
             outline=[*left, *right],
             outlet=Outlet(-DROP, shape.opening),
             friction=float(values["friction"]),
-            gravity=(weight * math.sin(tilt), -weight * math.cos(tilt)),
-            drag=weight / float(values["fall"]),
+            gravity=gravity,
+            drag=drag,
             curve=Curve(
                 "increments",
                 "grains that have left",
@@ -173,6 +182,15 @@ class GravityHopper(Scene):
         sway = phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
         return {"funnel": (funnel.home[0] + amplitude * sway, funnel.home[1])}
 
+    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
+        super().adjust(setup, values, changed)
+        if not changed.isdisjoint(("gravity", "fall")):
+            setup.gravity, setup.drag = _pull(values)
+
+    def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
+        del before, after  # it goes by pauses
+        return increment
+
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
         del values
         count = len(setup.packing)
@@ -185,17 +203,27 @@ class GravityHopper(Scene):
         side = np.where(bodies.x < middle, -1, 1)
         found = standing_arch(setup, latest, side)
         if found is None:
-            return Remarks((f"at rest: {count} grains stay on the funnel's sides",))
-        return Remarks(
-            (f"clogged: an arch of {int(found.sum())} holds {count} grains. Shake the funnel",),
-            found,
+            text = Text("at rest: {count} grains stay on the funnel's sides", count=count)
+            return Remarks((text,))
+        text = Text(
+            "clogged: an arch of {arch} holds {count} grains. Shake the funnel",
+            arch=int(found.sum()),
+            count=count,
         )
+        return Remarks((text,), found)
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         funnel = setup.world["funnel"]
         moved = funnel.position[0] - funnel.home[0]
         there = replace(setup, outline=[(x + moved, y) for x, y in setup.outline])
         return [*super().checks(there, track), _nothing_hangs(setup, track)]
+
+
+def _pull(values: Values) -> tuple[Point, float]:
+    """Gravity [k/R], and the drag [k/R²] that lets a free grain sink by ``fall``."""
+    tilt, weight = math.radians(float(values["tilt"])), float(values["gravity"])
+    gravity = (weight * math.sin(tilt), -weight * math.cos(tilt))
+    return gravity, weight / float(values["fall"])
 
 
 def _nothing_hangs(setup: Setup, track: Track) -> Check:

@@ -28,6 +28,7 @@ from scenes.scene import (
     recipe,
     solver,
 )
+from scenes.text import Text
 
 WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]
 PISTON = 1.6  # thickness of the piston [R]
@@ -68,8 +69,10 @@ class Hopper(Scene):
             1.0,
             "rest area of the grains over the area open to them, at the start",
         ),
-        Parameter("stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke"),
-        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION),
+        Parameter(
+            "stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke", live=True
+        ),
+        Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         *MATERIAL,
         *SOLVER,
     )
@@ -165,10 +168,16 @@ class Hopper(Scene):
         side = np.where(body == setup.world.index("left wall"), -1, 0)
         side[body == setup.world.index("right wall")] = 1
         found = standing_arch(setup, latest, side)
-        grains = "" if found is None else f", held by an arch of {int(found.sum())} grains"
-        return Remarks(
-            (f"clogged: {since / DIAMETER:.1f} diameters of stroke, nothing left{grains}",), found
+        text = Text(
+            "clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=since / DIAMETER
         )
+        if found is not None:
+            text = Text(
+                "{clogged}, held by an arch of {grains} grains",
+                clogged=text,
+                grains=int(found.sum()),
+            )
+        return Remarks((text,), found)
 
 
 class Shape:

@@ -30,6 +30,7 @@ from scenes.scene import (
     Track,
     Values,
 )
+from scenes.text import Text
 
 APART = 1.7  # half the distance between the centres of two grains, in their radius
 PLATE = 0.6  # thickness, in radii of a grain
@@ -57,6 +58,7 @@ class SingleGrain(Scene):
             0.0,
             0.99,
             "Poisson's ratio of the regular grain; that of the auxetic grain is minus this",
+            live=True,
         ),
         Parameter(
             "contact_stiffness",
@@ -65,13 +67,22 @@ class SingleGrain(Scene):
             5.0,
             2000.0,
             "stiffness of a contact over that of a grain: higher is harder and slower",
+            live=True,
         ),
         Parameter("radius", 1.0, "R", 0.2, 10.0, "radius of a grain at rest"),
         Parameter("four_plates", False, "", False, True, "squeeze from the sides as well"),
         Parameter(
-            "compression", 0.2, "", 1e-4, 0.4, "largest approach of the plates, in diameters"
+            "compression",
+            0.2,
+            "",
+            1e-4,
+            0.4,
+            "largest approach of the plates, in diameters",
+            live=True,
         ),
-        Parameter("step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment"),
+        Parameter(
+            "step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment", live=True
+        ),
         Parameter(
             "tolerance",
             1e-8,
@@ -79,6 +90,7 @@ class SingleGrain(Scene):
             1e-9,
             0.3,
             "largest residual force over mean contact force at the end of an increment",
+            live=True,
         ),
         Parameter(
             "max_iterations",
@@ -87,6 +99,7 @@ class SingleGrain(Scene):
             10,
             1_000_000,
             "force evaluations after which an increment ends unconverged, and says so",
+            live=True,
         ),
     )
 
@@ -132,6 +145,12 @@ class SingleGrain(Scene):
             follow=follow if four else None,
         )
 
+    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
+        super().adjust(setup, values, changed)
+        if "poisson_ratio" in changed:
+            nu = float(values["poisson_ratio"])
+            setup.packing.poisson_ratio = np.copysign(nu, setup.packing.poisson_ratio)
+
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         plate = setup.world["plate"]
         end = 2.0 * float(values["radius"]) * float(values["compression"])
@@ -148,16 +167,25 @@ class SingleGrain(Scene):
         """Each grain's height and width, and for two plates their ratio."""
         del values
         packing = setup.packing
-        words = []
+        texts = []
         for i in range(len(packing)):
             tall, wide = _strains(packing)[:, i]
             kind = "auxetic" if packing.auxetic[i] else "regular"
-            text = f"{kind}: height {100 * tall:+.1f} %, width {100 * wide:+.1f} %"
+            text = Text(
+                "{kind}: height {tall:+.1f} %, width {wide:+.1f} %",
+                kind=kind,
+                tall=100 * float(tall),
+                wide=100 * float(wide),
+            )
             if tall < -NOISE and setup.follow is None:
-                nu = float(packing.poisson_ratio[i])
-                text += f", Poisson's ratio {-wide / tall:.2f} ({nu:.2f} at small strain)"
-            words.append(text.replace("-", "−"))
-        return Remarks(tuple(words) if len(latest.now.body_contacts.grain) else ())
+                text = Text(
+                    "{strains}, Poisson's ratio {ratio:.2f} ({nu:.2f} at small strain)",
+                    strains=text,
+                    ratio=float(-wide / tall),
+                    nu=float(packing.poisson_ratio[i]),
+                )
+            texts.append(text)
+        return Remarks(tuple(texts) if len(latest.now.body_contacts.grain) else ())
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         own = [_stiffness(setup, track)]

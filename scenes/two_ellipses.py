@@ -28,6 +28,7 @@ from scenes.scene import (
     Track,
     Values,
 )
+from scenes.text import Text
 
 GRAIN = "right grain"
 TIPS = ("left tip", "right tip")
@@ -56,7 +57,7 @@ class TwoEllipses(Scene):
         Parameter(
             "mirror", False, "", False, True, "tilt and turn the right grain the other way round"
         ),
-        Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "force over overlap"),
+        Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "force over overlap", live=True),
     )
 
     def ingredients(self, values: Values) -> Ingredients:
@@ -138,12 +139,18 @@ class TwoEllipses(Scene):
         distance, angle = line_of_centres(packing)
         model = approximate_distance(packing, 0, 1, angle) - distance
         exact = contact_distance(packing, 0, 1, angle) - distance
-        words = f"model: {_gap(model)}, exact: {_gap(exact)}, early by {model - exact:.4f} R"
+        text = Text(
+            "model: {model}, exact: {exact}, early by {early:.4f} R",
+            model=_gap(model),
+            exact=_gap(exact),
+            early=model - exact,
+        )
         if _parallel(packing) and packing.rest_radius[0] == packing.rest_radius[1]:
             a, b = (float(axes[0]) for axes in packing.semi_axes)
             late, soon = parallel_expansion(b, a / b - 1.0, tilts_to_line(packing)[0])
-            words += f" (b ε² sin² 2θ = {soon - late:.4f} R)"
-        return Remarks((words,))
+            formula = "{early} (b ε² sin² 2θ = {expansion:.4f} R)"
+            text = Text(formula, early=text, expansion=soon - late)
+        return Remarks((text,))
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _never_late(track), _mirror(setup), _same(setup)]
@@ -198,8 +205,10 @@ def _follow(packing: Packing, world: RigidWorld) -> None:
         tip.axis = _tangent(tilts[k])
 
 
-def _gap(overlap: float) -> str:
-    return f"overlap {overlap:.4f} R" if overlap > 0.0 else f"gap {-overlap:.4f} R"
+def _gap(overlap: float) -> Text:
+    if overlap > 0.0:
+        return Text("overlap {size:.4f} R", size=overlap)
+    return Text("gap {size:.4f} R", size=-overlap)
 
 
 def _parallel(packing: Packing) -> bool:
