@@ -99,7 +99,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         metavar="FACTOR",
         help="size of letters and controls, 0.5 to 4 (default: by the screen's size)",
     )
-    _add_look(play)
+    _add_look(play, "that of this computer, if there is a choice")
 
     record = command("record", _record, "Run a scene by itself, and write a film, a table or both.")
     record.add_argument("scene", metavar="SCENE", help="one of the names that `list` prints")
@@ -197,7 +197,8 @@ def _add_size(parser: Parser) -> None:
     )
 
 
-def _add_look(parser: Parser) -> None:
+def _add_look(parser: Parser, language_default: str = "en") -> None:
+    from sandbox import language
     from sandbox.draw.words import VIEWS
 
     parser.add_argument(
@@ -213,6 +214,13 @@ def _add_look(parser: Parser) -> None:
         default="dark",
         metavar="NAME",
         help="dark (default), or light for a bright room",
+    )
+    parser.add_argument(
+        "--language",
+        type=argument(arguments.one_of(*language.available())),
+        metavar="NAME",
+        help=f"of the words in the picture: {', '.join(language.available())} "
+        f"(default: {language_default})",
     )
 
 
@@ -237,8 +245,9 @@ def _list(options: argparse.Namespace) -> int:
 
 
 def _play(options: argparse.Namespace) -> int:
-    from sandbox import environment
+    from sandbox import environment, language
 
+    language.use(options.language or language.of_environment())
     log = arguments.output_file("--log", options.log, [".jsonl"]) if options.log else None
     if options.scene is None:
         if options.set:
@@ -332,8 +341,10 @@ def _study(options: argparse.Namespace) -> int:
 
 def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> Output | None:
     """Where to write, checked; None if nothing is asked for."""
+    from sandbox import language
     from sandbox.views.record import Output
 
+    language.use(options.language or language.SOURCE)
     film: Path | None = None
     table: Path | None = None
     if options.out:
