@@ -223,6 +223,11 @@ class Friction:
             setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
         return twin
 
+    @property
+    def size(self) -> int:
+        """Bytes of spins and memories."""
+        return self.spin.nbytes + self._keys.nbytes + self._slips.nbytes
+
     def hash(self) -> str:
         """SHA-256 of spins and memories."""
         digest = hashlib.sha256(np.float64(self.coefficient).tobytes())

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
 from core.packing import Packing, PeriodicBox
@@ -91,11 +92,7 @@ class Quasistatic:
         self.packing = packing
         self.world = world
         self.settings = settings or Settings()
-        smallest = float(packing.rest_radius.min()) if len(packing) else 1.0
-        if self.settings.step > LONGEST_STEP * smallest * (1.0 + 1e-9):
-            raise InputError(
-                f"the increment must be at most {LONGEST_STEP} of the smallest radius, here {LONGEST_STEP * smallest:.3g} R"
-            )
+        _check_step(self.settings.step, packing)
         self.reactions = np.zeros((len(world.bodies), 3))
         self.friction = friction
         self.gravity = gravity
@@ -120,6 +117,51 @@ class Quasistatic:
     def busy(self) -> bool:
         """True while an increment is begun and not finished."""
         return self._relaxation is not None
+
+    def save(self, before: EngineState | None = None) -> EngineState:
+        """The state between two increments; material that is the same as in ``before`` is shared with it."""
+        if self._relaxation is not None:
+            raise RuntimeError("the increment is not finished")
+        return EngineState(
+            packing=keep_packing(self.packing, None if before is None else before.packing),
+            bodies=keep_bodies(self.world),
+            reactions=self.reactions.copy(),
+            last=self._last.copy(),
+            own_motion=self._own_motion.copy(),
+            last_moved=dict(self._last_moved),
+            friction=None if self.friction is None else self.friction.copy(),
+            settings=self.settings,
+            gravity=self.gravity,
+            drag=self.drag,
+        )
+
+    def restore(self, state: EngineState) -> None:
+        """Be as when ``state`` was saved: what follows is the same to the last bit."""
+        self.packing = state.packing.copy()
+        place_bodies(self.world, state.bodies)
+        self.reactions = state.reactions.copy()
+        self._last, self._own_motion = state.last.copy(), state.own_motion.copy()
+        self._last_moved = dict(state.last_moved)
+        self.friction = None if state.friction is None else state.friction.copy()
+        self.settings, self.gravity, self.drag = state.settings, state.gravity, state.drag
+        self._frozen = self._relaxation = None
+        self._contacts = self.contacts()
+
+    def adjust(
+        self, settings: Settings, friction: float, gravity: Point | None, drag: float
+    ) -> None:
+        """Go on with other settings, and with what the packing's material has become. Raises InputError as for a new one."""
+        if self._relaxation is not None:
+            raise RuntimeError("nothing can be changed in the middle of an increment")
+        _check_step(settings.step, self.packing)
+        self.settings, self.gravity, self.drag = settings, gravity, drag
+        if friction == 0.0:
+            self.friction = self._frozen = None
+        elif self.friction is None:
+            self.friction = Friction(friction, len(self.packing))
+        else:
+            self.friction.coefficient = friction
+        self._contacts = self.contacts()
 
     def begin(self, targets: dict[str, Point], box: PeriodicBox | None = None) -> None:
         """Move each named body one step towards its target and start to relax. With no targets: relax where things stand.
@@ -325,3 +367,12 @@ class Quasistatic:
             friction=friction,
         )
         return self.latest
+
+
+def _check_step(step: float, packing: Packing) -> None:
+    """Raises InputError if a body could get past a grain in one increment [R]."""
+    smallest = float(packing.rest_radius.min()) if len(packing) else 1.0
+    if step > LONGEST_STEP * smallest * (1.0 + 1e-9):
+        raise InputError(
+            f"the increment must be at most {LONGEST_STEP} of the smallest radius, here {LONGEST_STEP * smallest:.3g} R"
+        )

@@ -61,6 +61,7 @@ class History:
     def __init__(self) -> None:
         self._rows: list[Row] = []
         self._curve = np.empty((2, 256))
+        self.events: tuple[Event, ...] = ()  # the newest last
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -75,6 +76,20 @@ class History:
             self._curve = np.concatenate([self._curve, np.empty_like(self._curve)], axis=1)
         self._curve[:, count] = row.stroke, row.resisting
         self._rows.append(row)
+
+    def announce(self, event: Event) -> None:
+        """Add an event."""
+        self.events = (*self.events, event)
+
+    def upto(self, length: int) -> History:
+        """The history as it was with so many rows, to go on from there; itself if there are no more."""
+        if length == len(self._rows):
+            return self
+        early = History()
+        early._rows = self._rows[:length]
+        early._curve = self._curve[:, : max(length, 256)].copy()
+        early.events = tuple(event for event in self.events if event.increment < length)
+        return early
 
     @property
     def curve(self) -> np.ndarray:

@@ -14,17 +14,15 @@ from core.packing import PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
 from core.rigid import Point
+from sandbox.checkpoints import Checkpoint, Checkpoints, bare
+from sandbox.course import Course
 from sandbox.frame import Frame
-from sandbox.history import History, Row
+from sandbox.history import Event, History
+from sandbox.reading import BOX, follow_drive, read_off, tell_what_stopped
 from sandbox.snapshot import View, take
-from scenes.scene import Check, Handle, Latest, Remarks, Scene, Setup, Track, Values
-from scenes.text import Text
+from scenes.scene import Check, Earlier, Handle, Latest, Scene, Setup, Track, Values
 
-BOX = "box"  # the handle that is no body: the periodic cell
 ARRIVED = 1e-6  # [R] a body this near its target is there
-STUCK = 1e-3  # of a step: a body that moves less than that is stopped
-SQUEEZED_FLAT = "a grain was squeezed flat: back to the state before this step. Draw back, or reset"
-BLEW_UP = "the numbers blew up: back to the state before this step. Draw back, or reset"
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
@@ -48,55 +46,77 @@ class Run:
             relaxes=setup.relaxes,
         )
         self.history = History()
-        self.notices: list[str] = []
+        self.checkpoints = Checkpoints()
         self._drive = setup.handles[0]
-        self._direction = np.array(self._drive.direction)
-        self._targets: dict[str, Point] = {}
-        self._held: set[str] = set()
-        self._blocked: set[str] = set()  # stopped by something: they try again when the hand moves
-        self._script: int | None = None  # increments of the scripted drive so far
-        self._stroke = 0.0
-        self._initial, self._out = len(setup.packing), 0
-        self._last_exit = (0.0, 0.0)  # stroke and force when a grain last left
+        self._course = Course(self._drive.direction, len(setup.packing))
+        self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
         self.engine.begin({})
         last: Increment | None = None
         while last is None:
             last = self.engine.relax(1_000)
         self._last = last
-        self._moving = setup.drag > 0.0  # the grains go on by themselves
+        self._course.moving = setup.drag > 0.0
         self._record(last)
-        self._remarks = self._remark(None, 0)
+        self._remark(None, None, 0)
+        self._keep()
 
     # What a hand does.
 
     def grab(self, handle: str) -> None:
         """Take hold of a handle; the scripted drive ends. Raises InputError for an unknown one."""
         self._handle(handle)
-        self._held.add(handle)
-        self._script = None
-        self._targets.clear()
+        self._course.held.add(handle)
+        self._course.script = None
+        self._course.targets.clear()
 
     def move(self, handle: str, target: Point) -> None:
         """Where a held handle is to go [R]."""
         self._handle(handle)
-        if handle in self._held:
+        if handle in self._course.held:
             reach = self.setup.reach
             there = target if reach is None else reach(self.setup.packing, handle, target)
-            self._targets[handle] = there
-            self._blocked.discard(handle)
-            self.notices = []
+            self._course.targets[handle] = there
+            self._course.blocked.discard(handle)
+            self._course.notices.clear()
 
     def release(self, handle: str) -> None:
         """Let go; the body stays where it is."""
         self._handle(handle)
-        self._held.discard(handle)
-        self._targets.pop(handle, None)
+        self._course.held.discard(handle)
+        self._course.targets.pop(handle, None)
 
     def follow_script(self, on: bool) -> None:
         """Switch the scripted drive on, from its beginning, or off."""
-        self._script = 0 if on else None
-        self._targets.clear()
-        self._blocked.clear()
+        self._course.script = 0 if on else None
+        self._course.targets.clear()
+        self._course.blocked.clear()
+
+    def adjust(self, values: Values, changed: frozenset[str]) -> None:
+        """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
+
+        Raises InputError for a step that is too long, and changes nothing then.
+        """
+        setup, before = self.setup, self.present()
+        try:
+            self.scene.adjust(setup, values, changed)
+            self.engine.adjust(setup.solver, setup.friction, setup.gravity, setup.drag)
+        except InputError:
+            self.restore(before)
+            raise
+        if self._course.script is not None:
+            place = self.scene.place_in_drive(self._course.script, self.values, values)
+            self._course.script = place
+        self.values = values
+        self.touched()
+
+    def touched(self) -> None:
+        """Something was changed between two increments: one increment relaxes where things stand."""
+        self._course.touched = True
+        self._kept = None
+
+    def say(self, notice: str) -> None:
+        """Plain words for the person at the window, until something else is to be said."""
+        self._course.notices = [notice]
 
     def _handle(self, name: str) -> Handle:
         for handle in self.setup.handles:
@@ -115,7 +135,7 @@ class Run:
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
-            targets = self._next_targets()
+            targets = {} if self._course.touched else self._next_targets()
             if not targets and self._still:
                 return False
             box = targets.pop(BOX, None)
@@ -124,20 +144,28 @@ class Run:
         if increment is None:
             return False
         before, self._last = self._last, increment
-        self._tell_what_stopped(increment)
+        self._course.touched = False
+        earlier = Earlier(before, self.setup.packing.label)
+        tell_what_stopped(self._course, self.setup, increment)
         left = self._remove_those_gone()
-        self._follow(np.array(increment.moved.get(self._drive.body, (0.0, 0.0))))
+        follow_drive(self._course, self.setup, increment)
         self._record(increment)
         if left:
-            self._last_exit = self.history[-1].stroke, self.history[-1].resisting
-        self._moving = self._goes_on(left)
-        self._remarks = self._remark(None if left else before, left)
+            self._course.last_exit = self.history[-1].stroke, self.history[-1].resisting
+        self._course.moving = self._goes_on(left)
+        self._remark(None if left else before, earlier, left)
+        self._keep()
         return True
+
+    def _record(self, increment: Increment) -> None:
+        row = read_off(self._course, self.setup, increment, len(self.history))
+        self.history.append(row)
 
     @property
     def _still(self) -> bool:
-        """True if neither the script nor the grains by themselves want another increment."""
-        return self._script is None and not self._moving
+        """True if neither the script, nor the grains by themselves, nor a change want another increment."""
+        course = self._course
+        return course.script is None and not course.moving and not course.touched
 
     def _goes_on(self, left: int) -> bool:
         """With drag: whether the grains are still on their way."""
@@ -147,29 +175,40 @@ class Run:
             return False
         return left > 0 or self.engine.farthest_move() > AT_REST * math.hypot(*gravity) / drag
 
-    def _remark(self, before: Increment | None, left: int) -> Remarks:
-        """What the scene has to say about the newest increment."""
-        at_rest = self.setup.drag > 0.0 and not self._moving
-        latest = Latest(before, self._last, self.history.curve, left, self._last_exit, at_rest)
-        return self.scene.remarks(self.setup, self.values, latest)
+    def _remark(self, before: Increment | None, earlier: Earlier | None, left: int) -> None:
+        """Take down what the scene has to say about the newest increment, and what has begun in it."""
+        course = self._course
+        at_rest = self.setup.drag > 0.0 and not course.moving
+        curve = self.history.curve
+        latest = Latest(before, self._last, curve, left, course.last_exit, at_rest, earlier)
+        remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
+        course.remarks = remarks
+        row = self.history[-1]
+        for kind, text in remarks.happening.items():
+            # A clog remains the same one until a grain has left.
+            same = kind != "avalanche" and course.announced.get(kind) == course.out
+            if kind not in going_on.happening and not same:
+                course.announced[kind] = course.out
+                self.history.announce(Event(kind, row.increment, row.stroke, row.resisting, text))
 
     def _next_targets(self) -> dict[str, Point]:
-        if self._script is not None:
-            targets = self.scene.drive(self.setup, self.values, self._script)
+        course = self._course
+        if course.script is not None:
+            targets = self.scene.drive(self.setup, self.values, course.script)
             if targets is not None:
-                self._script += 1
-                self._targets = dict(targets)
+                course.script += 1
+                course.targets = dict(targets)
                 return dict(targets)
-            self._script = None
-            self._targets.clear()
+            course.script = None
+            course.targets.clear()
         return self._wanted()
 
     def _wanted(self) -> dict[str, Point]:
         """What is not yet where the hand wants it, unless something stops it."""
         return {
             name: target
-            for name, target in self._targets.items()
-            if name not in self._blocked and self._distance(name, target) > ARRIVED
+            for name, target in self._course.targets.items()
+            if name not in self._course.blocked and self._distance(name, target) > ARRIVED
         }
 
     def _cell(self, target: Point) -> PeriodicBox | None:
@@ -187,35 +226,13 @@ class Run:
         way = np.array(target) - body.position
         return abs(float(np.dot(way, body.axis))) if body.axis is not None else math.hypot(*way)
 
-    def _tell_what_stopped(self, increment: Increment) -> None:
-        self.notices = []
-        for name, why in increment.stopped.items():
-            label = self._handle(name).label
-            stuck = math.hypot(*increment.moved[name]) < STUCK * self.setup.solver.step
-            if stuck:
-                self._blocked.add(name)
-            if why == "force limit":
-                limit = self.setup.world[name].force_limit
-                text = "the hand is not stronger than {limit:g} k R: {label} stopped"
-                self.notices.append(Text(text, limit=limit, label=label))
-            elif why == "end of travel":
-                self.notices.append(Text("{label}: end of travel", label=label))
-            elif stuck:
-                self.notices.append(Text("{label}: stopped by the wall", label=label))
-        reason = increment.report.reason
-        if reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
-            self._blocked.update(increment.moved, {BOX})
-            self._script = None
-            flat = reason is StopReason.COLLAPSED
-            self.notices.append(SQUEEZED_FLAT if flat else BLEW_UP)
-
     def _remove_those_gone(self) -> int:
         """How many grains have left by the outlet in this increment."""
         if self.setup.outlet is None:
             return 0
         gone = self.setup.outlet.gone(self.engine.packing)
         if gone.any():
-            self._out += int(gone.sum())
+            self._course.out += int(gone.sum())
             self.engine.remove(gone)
             self.setup.packing = self.engine.packing
             pairs, bodies = self.engine.contacts()
@@ -225,49 +242,61 @@ class Run:
             )
         return int(gone.sum())
 
-    def _follow(self, moved: np.ndarray) -> None:
-        """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
-        if self._drive.body == BOX:
-            return
-        body = self.setup.world[self._drive.body]
-        if body.axis is not None:
-            self._stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
-        else:
-            length = math.hypot(*moved)
-            self._stroke += length
-            if length > 0.0:
-                self._direction = moved / length
+    # States to go back to.
 
-    def _record(self, increment: Increment) -> None:
-        fx = fy = 0.0
-        if self._drive.body != BOX:
-            index = self.setup.world.index(self._drive.body)
-            fx, fy = map(float, increment.reactions[index, :2])
-        resisting = -(fx * self._direction[0] + fy * self._direction[1]) + 0.0
-        curve = self.setup.curve
-        if curve is not None:
-            at = curve.stroke
-            self._stroke = len(self.history) if at is None else at(self.setup.packing, increment)
-            resisting = curve.force(self.setup.packing, increment)
-        report = increment.report
-        self.history.append(
-            Row(
-                increment=len(self.history),
-                stroke=self._stroke,
-                fx=fx,
-                fy=fy,
-                grains_out=self._out,
-                energy=report.energy,
-                residual=report.residual,
-                iterations=report.iterations,
-                stop_reason=str(report.reason),
-                resisting=float(resisting),
-            )
+    @property
+    def kept(self) -> Checkpoint | None:
+        """The checkpoint of the state as it is: None if something was changed since, or is going to be by the script."""
+        return None if self._course.script is not None else self._kept
+
+    def present(self) -> Checkpoint:
+        """A checkpoint of the state as it is: the same object as long as nothing has changed."""
+        if self.kept is None:
+            self._kept = self._checkpoint(self.checkpoints.at(self.checkpoints.last))
+        assert self._kept is not None
+        return self._kept
+
+    def _keep(self) -> None:
+        """Keep the state after an increment."""
+        before = self.checkpoints.at(self.checkpoints.last) if len(self.checkpoints) else None
+        self._kept = self._checkpoint(before)
+        self.checkpoints.add(self._kept)
+
+    def _checkpoint(self, before: Checkpoint | None) -> Checkpoint:
+        return Checkpoint(
+            engine=self.engine.save(None if before is None else before.engine),
+            course=self._course.copy(),
+            last=bare(self._last),
+            history=self.history,
+            length=len(self.history),
+            values=self.values,
         )
+
+    def restore(self, kept: Checkpoint) -> None:
+        """Be as at that checkpoint; what is kept of the past and the future of that state stays."""
+        setup, engine = self.setup, self.engine
+        engine.restore(kept.engine)
+        setup.packing, setup.solver = engine.packing, engine.settings
+        setup.gravity, setup.drag = engine.gravity, engine.drag
+        setup.friction = 0.0 if engine.friction is None else engine.friction.coefficient
+        self._course, self.values = kept.course.copy(), kept.values
+        self.history = kept.history.upto(kept.length)
+        pairs, bodies = engine.contacts()
+        self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
+        self.checkpoints.travel(kept)
+        self._kept = kept
+
+    def recall(self, increment: int) -> None:
+        """Go to the state after that increment, or the nearest kept before it."""
+        self.restore(self.checkpoints.at(increment))
+
+    def still(self) -> None:
+        """Nothing is held, nothing is wanted, and the script is off."""
+        self._course.still()
 
     # What can be seen.
 
-    def frame(self) -> Frame:
+    def frame(self, can_undo: bool = False, can_redo: bool = False) -> Frame:
         """A snapshot that shares nothing with the run."""
         return take(
             View(
@@ -280,12 +309,10 @@ class Run:
                 last=self._last,
                 history=self.history,
                 drive=self._drive,
-                targets=self._targets,
-                stroke=self._stroke,
-                grains_out=self._out,
-                protocol=self._script is not None,
-                notices=(*self.notices, *self._remarks.notices),
-                highlight=self._remarks.highlight,
+                course=self._course,
+                kept=(self.checkpoints.first, self.checkpoints.last),
+                can_undo=can_undo,
+                can_redo=can_redo,
             )
         )
 
@@ -306,6 +333,6 @@ class Run:
             grains_out=rows.column("grains_out"),
             residual=rows.column("residual"),
             converged=rows.column("stop_reason") == str(StopReason.CONVERGED),
-            initial_grains=self._initial,
+            initial_grains=self._course.initial,
         )
         return self.scene.checks(self.setup, track)

@@ -6,8 +6,8 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping
 
+from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
-from core.packing import Packing
 from core.warmup import compile_kernels
 from sandbox.commands import (
     Change,
@@ -25,12 +25,15 @@ from sandbox.frame import Frame
 from sandbox.history import History
 from sandbox.log import Log
 from sandbox.log import write_log as write_log_file
+from sandbox.past import OLD_RUN_BYTES, Moment, Past, Start
 from sandbox.run import Run
 from scenes import registry
-from scenes.scene import Check, Scene, Setup, Values
+from scenes.scene import Check, Ingredients, Scene, Values
+from scenes.text import message
 
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
 COMPILE_SHARE = 0.5
+UNDOABLE = (Grab, Protocol, Reset, Change, Recall)
 
 Progress = Callable[[str, float], None]
 
@@ -56,22 +59,15 @@ class Session:
         self._commands: list[tuple[int, Command]] = []
         self._finished = 0
         self._run: Run | None = None
-        self._start: tuple[Packing, Setup] | None = None
+        self._start: Start | None = None
+        self._past = Past()
         self._progress: Progress | None = None
 
     def build(self, progress: Progress | None = None) -> None:
         """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
         self._progress = progress
         report = progress or _silent
-        report(COMPILING, 0.0)
-        terms = self.scene.ingredients(self.settings)
-        compile_kernels(
-            periodic=terms.periodic,
-            rigid=terms.rigid,
-            friction=terms.friction,
-            gravity=terms.gravity,
-            progress=lambda share: report(COMPILING, COMPILE_SHARE * share),
-        )
+        self._compile(self.scene.ingredients(self.settings))
         report(PACKING, COMPILE_SHARE)
         setup = self.scene.build(
             self.settings,
@@ -79,10 +75,21 @@ class Session:
             self.seed,
             lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
         )
-        self._placement = setup.world.placement()
-        self._start = setup.packing.copy(), setup
+        start = Start(setup.packing.copy(), setup, keep_bodies(setup.world), self.settings)
         self._run = Run(self.scene, self.settings, self.packing, self.seed, setup)
+        self._start = start
         report("ready", 1.0)
+
+    def _compile(self, terms: Ingredients) -> None:
+        report = self._progress or _silent
+        report(COMPILING, 0.0)
+        compile_kernels(
+            periodic=terms.periodic,
+            rigid=terms.rigid,
+            friction=terms.friction,
+            gravity=terms.gravity,
+            progress=lambda share: report(COMPILING, COMPILE_SHARE * share),
+        )
 
     # Commands.
 
@@ -101,11 +108,19 @@ class Session:
             try:
                 self._apply(command)
             except InputError as error:
-                self.run.notices = [str(error)]
+                self.run.say(message(error))
                 continue
             self._commands.append((self._finished, command))
 
     def _apply(self, command: Command) -> None:
+        before = self._moment() if isinstance(command, UNDOABLE) else None
+        self._do(command)
+        if before is not None:
+            if before.run is not self.run:
+                before.run.checkpoints.squeeze(OLD_RUN_BYTES)
+            self._past.remember(before, command, self._finished)
+
+    def _do(self, command: Command) -> None:
         match command:
             case Grab(handle):
                 self.run.grab(handle)
@@ -117,19 +132,62 @@ class Session:
                 self.run.follow_script(on)
             case Reset():
                 self._reset()
+            case Change(name, value) if self.rebuilds(command):
+                self._rebuild(name, value)
             case Change(name, value):
-                self._change(name, value)
-            case Recall() | Undo() | Redo():
-                raise InputError("there is nothing to go back to")
+                self._adjust(name, value)
+            case Recall(increment):
+                self.run.recall(increment)
+                self.settings = self.run.values
+            case Undo():
+                self._go_to(self._past.undo(self._moment()))
+            case Redo():
+                self._go_to(self._past.redo(self._moment()))
 
     def _reset(self) -> None:
-        assert self._start is not None
-        packing, setup = self._start
-        setup.packing = packing.copy()
-        setup.world.place(self._placement)
-        self._run = Run(self.scene, self.settings, self.packing, self.seed, setup)
+        """The start, with the settings as they are now."""
+        start = self._start
+        assert start is not None
+        start.setup.packing = start.packing.copy()
+        place_bodies(start.setup.world, start.bodies)
+        changed = {name for name, value in self.settings.items() if value != start.values[name]}
+        self.scene.adjust(start.setup, self.settings, frozenset(changed))
+        self._run = Run(self.scene, self.settings, self.packing, self.seed, start.setup)
 
-    def _change(self, name: str, value: object) -> None:
+    def _moment(self) -> Moment:
+        """Where the session stands."""
+        assert self._start is not None
+        checkpoint = self.run.present()
+        return Moment(self.scene, self.packing, self.seed, self._start, self.run, checkpoint)
+
+    def _go_to(self, moment: Moment) -> None:
+        """Be as at that moment, with nothing held and the script off."""
+        if moment.run is not self.run:
+            self.run.checkpoints.squeeze(OLD_RUN_BYTES)
+        self.scene, self.packing, self.seed = moment.scene, moment.packing, moment.seed
+        self._start, self._run = moment.start, moment.run
+        self._run.restore(moment.checkpoint)
+        self._run.still()
+        self.settings = self._run.values
+
+    def rebuilds(self, command: Command) -> bool:
+        """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
+        if not isinstance(command, Change):
+            return False
+        return not any(p.live and p.name == command.name for p in self.scene.parameters)
+
+    def _adjust(self, name: str, value: object) -> None:
+        """A live parameter acts on the grains where they stand."""
+        settings = self.scene.settings({**self.settings, name: value})
+        if settings[name] == self.settings[name]:
+            return
+        terms = self.scene.ingredients(settings)
+        if terms != self.scene.ingredients(self.settings):
+            self._compile(terms)
+        self.run.adjust(settings, frozenset({name}))
+        self.settings = settings
+
+    def _rebuild(self, name: str, value: object) -> None:
         scene, packing, seed, settings = self.scene, self.packing, self.seed, dict(self.settings)
         if name == "scene":
             scene = registry.get(str(value))
@@ -190,7 +248,8 @@ class Session:
 
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""
-        return self.run.frame()
+        now = self.run.kept
+        return self.run.frame(self._past.can_undo(now), self._past.can_redo)
 
     def state_hash(self) -> str:
         """Hash of every bit of the state."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +12,7 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
+from sandbox.course import Course
 from sandbox.frame import BodyShape, Contacts, Frame, HandleState
 from sandbox.history import History
 from scenes.scene import Handle, Scene, Setup, Values
@@ -32,12 +32,10 @@ class View:
     last: Increment
     history: History
     drive: Handle
-    targets: Mapping[str, Point]
-    stroke: float
-    grains_out: int
-    protocol: bool
-    notices: tuple[str, ...]
-    highlight: NDArray[np.bool_] | None = None
+    course: Course
+    kept: tuple[int, int]  # first and last increment that can be recalled
+    can_undo: bool
+    can_redo: bool
 
 
 def take(view: View) -> Frame:
@@ -45,6 +43,7 @@ def take(view: View) -> Frame:
     packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
     under_way = view.engine.progress()
     last = view.last.report
+    highlight = view.course.remarks.highlight
     state = packing.state.copy()
     state[:2] = packing.folded()
     primitives, _ = view.setup.world.primitives()
@@ -70,16 +69,16 @@ def take(view: View) -> Frame:
         bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
         handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
         bounds=view.setup.bounds,
-        stroke=view.stroke,
-        grains_out=view.grains_out,
+        stroke=view.course.stroke,
+        grains_out=view.course.out,
         energy=last.energy,
         residual=last.residual,
         tolerance=view.setup.solver.tolerance,
         iterations=(last if under_way is None else under_way).iterations,
         stop_reason=str(last.reason),
         busy=under_way is not None,
-        protocol=view.protocol,
-        notices=view.notices,
+        protocol=view.course.script is not None,
+        notices=(*view.course.notices, *view.course.remarks.notices),
         curve_stroke=view.history.curve[0],
         curve_force=view.history.curve[1],
         spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
@@ -88,10 +87,14 @@ def take(view: View) -> Frame:
         else curve.force_label,
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
         box=None if box is None else (box.width, box.height, box.shift),
-        highlight=None if view.highlight is None else view.highlight.copy(),
+        highlight=None if highlight is None else highlight.copy(),
         residual_force=view.last.unbalanced.copy(),
         settings=dict(view.settings),
-        last_kept=len(view.history) - 1,
+        first_kept=view.kept[0],
+        last_kept=view.kept[1],
+        can_undo=view.can_undo,
+        can_redo=view.can_redo,
+        events=view.history.events,
     )
 
 
@@ -125,7 +128,7 @@ def _contact_lines(
 
 def _handle_state(view: View, handle: Handle) -> HandleState:
     box = view.setup.packing.box
-    target = view.targets.get(handle.body)
+    target = view.course.targets.get(handle.body)
     if handle.body == "box" and box is not None:
         at = view.setup.box_handle
         place = (box.width, box.height) if at is None else at(box)

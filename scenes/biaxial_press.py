@@ -59,8 +59,10 @@ class BiaxialPress(Scene):
             1.0,
             "rest area of the grains over the area open to them, at the start",
         ),
-        Parameter("compression", 0.2, "", 0.01, 0.5, "largest loss of area, as a share of it"),
-        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
+        Parameter(
+            "compression", 0.2, "", 0.01, 0.5, "largest loss of area, as a share of it", live=True
+        ),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         *MATERIAL,
         *SOLVER,
     )

@@ -50,8 +50,8 @@ class Intruder(Scene):
             1.0,
             "rest area of the grains over the area open to them",
         ),
-        Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag"),
-        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION),
+        Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag", live=True),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         *MATERIAL,
         *SOLVER,
     )

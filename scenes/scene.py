@@ -6,10 +6,11 @@ The same scene serves the window, films, tests and studies. It is a list of ingr
 from __future__ import annotations
 
 import difflib
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +87,14 @@ class Setup:
 
 
 @dataclass(frozen=True)
+class Earlier:
+    """The increment before the newest one, and the labels (N,) of the grains as they were numbered then."""
+
+    increment: Increment
+    label: NDArray[np.int64]
+
+
+@dataclass(frozen=True)
 class Latest:
     """The newest increment, for what a scene has to say about it."""
 
@@ -97,14 +106,22 @@ class Latest:
     left: int  # grains that left in this increment
     last_exit: tuple[float, float]  # stroke and force when a grain last left
     at_rest: bool = False  # with drag: the grains have come to rest
+    earlier: Earlier | None = None  # the one before it, also where grains have left since
+
+
+Happening = Literal["clog", "arch", "avalanche"]
 
 
 @dataclass(frozen=True)
 class Remarks:
-    """What a scene says about an increment, in plain words, and the grains that it points at, (N,) or None."""
+    """What a scene says about an increment, in plain words, and the grains that it points at, (N,) or None.
+
+    ``happening``: what goes on now, in plain words; it is announced when it begins.
+    """
 
     notices: tuple[str, ...] = ()
     highlight: NDArray[np.bool_] | None = None
+    happening: Mapping[Happening, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -193,6 +210,35 @@ class Scene(ABC):
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end. {}: wait."""
 
+    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
+        """Let what is built have ``values``, of which the live parameters in ``changed`` are new.
+
+        Arrays of the packing are replaced, never written into.
+        """
+        packing = setup.packing
+        for name, kind in (("regular_poisson_ratio", False), ("auxetic_poisson_ratio", True)):
+            if name in changed:
+                of_kind = np.signbit(packing.poisson_ratio) == kind
+                new = np.where(of_kind, float(values[name]), packing.poisson_ratio)
+                packing.poisson_ratio = new
+        if "contact_stiffness" in changed:
+            packing.contact_stiffness = np.full(len(packing), float(values["contact_stiffness"]))
+        if "friction" in changed:
+            setup.friction = float(values["friction"])
+        if not changed.isdisjoint(p.name for p in SOLVER):
+            setup.solver = replace(
+                setup.solver,
+                step=float(values["step"]),
+                tolerance=float(values["tolerance"]),
+                max_iterations=int(values["max_iterations"]),
+            )
+
+    def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
+        """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
+        if "step" not in before:
+            return increment
+        return math.ceil(increment * float(before["step"]) / float(after["step"]) - 1e-9)
+
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
         del setup, values, latest
@@ -205,8 +251,18 @@ class Scene(ABC):
 
 MATERIAL = (
     Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
-    Parameter("regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains"),
-    Parameter("auxetic_poisson_ratio", -0.8, "", -0.99, -0.01, "Poisson's ratio of auxetic grains"),
+    Parameter(
+        "regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains", live=True
+    ),
+    Parameter(
+        "auxetic_poisson_ratio",
+        -0.8,
+        "",
+        -0.99,
+        -0.01,
+        "Poisson's ratio of auxetic grains",
+        live=True,
+    ),
     Parameter(
         "contact_stiffness",
         50.0,
@@ -214,11 +270,12 @@ MATERIAL = (
         5.0,
         1000.0,
         "stiffness of a contact over that of a grain: higher is harder and slower",
+        live=True,
     ),
 )
 FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leaves the term out"
 SOLVER = (
-    Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment"),
+    Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment", live=True),
     Parameter(
         "tolerance",
         1e-2,
@@ -226,6 +283,7 @@ SOLVER = (
         1e-8,
         0.3,
         "largest residual force over mean contact force at the end of an increment",
+        live=True,
     ),
     Parameter(
         "max_iterations",
@@ -234,6 +292,7 @@ SOLVER = (
         10,
         1_000_000,
         "force evaluations after which an increment ends unconverged, and says so",
+        live=True,
     ),
 )
 
