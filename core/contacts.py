@@ -63,16 +63,19 @@ def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
         vi = v[i]
         uj = u[j]
         vj = v[j]
+        # Roots and divisions set the pace: three of the one, two of the other, as few as possible after another.
         r2 = dx * dx + dy * dy + COINCIDENT
-        inverse = 1.0 / math.sqrt(r2)
-        inverse2 = inverse * inverse
+        r = math.sqrt(r2)
+        inverse2 = 1.0 / r2
+        inverse = r * inverse2
         c2 = (dx * dx - dy * dy) * inverse2
         s2 = 2.0 * dx * dy * inverse2
-        hi2 = s[i] + ui * c2 + vi * s2
-        hj2 = s[j] + uj * c2 + vj * s2
-        inverse_hi = 1.0 / math.sqrt(hi2)
-        inverse_hj = 1.0 / math.sqrt(hj2)
-        overlap = hi2 * inverse_hi + hj2 * inverse_hj - r2 * inverse
+        hi = math.sqrt(s[i] + ui * c2 + vi * s2)
+        hj = math.sqrt(s[j] + uj * c2 + vj * s2)
+        both = 1.0 / (hi * hj)
+        inverse_hi = hj * both
+        inverse_hj = hi * both
+        overlap = hi + hj - r
         # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
         overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
         f = stiffness[i] * overlap

@@ -32,6 +32,7 @@ class Lists(NamedTuple):
     cell_order: NDArray[np.int64]  # (N,)
     cell_start: NDArray[np.int64]  # (cells + 1,)
     cell_of: NDArray[np.int64]  # (N,)
+    sorted: NDArray[np.float64]  # (3, N) x, y, half a reach, in cell_order
     degree: NDArray[np.int64]  # (N,) neighbours of each grain
     place: NDArray[np.int64]  # (N,) inverse of ``order``
     first: NDArray[np.int64]  # (P,) one grain of each pair
@@ -54,6 +55,7 @@ def allocate(grains: int, pairs: int, slots: int) -> Lists:
         cell_order=integers(grains),
         cell_start=integers(4 * grains + 32),
         cell_of=integers(grains),
+        sorted=np.zeros((3, grains)),
         degree=integers(grains),
         place=integers(grains),
         first=integers(pairs),
@@ -74,7 +76,7 @@ def wrap(value, length, inverse):
 
 @kernel
 def search_cells(state, skin, lists, box):
-    """Sort grains into cells at least one cut-off wide. Returns (columns, rows)."""
+    """Sort grains into cells at least one cut-off wide. Returns (columns, rows, width of a column [R])."""
     grains = state.shape[1]
     widest = 0.0
     for i in range(grains):
@@ -121,92 +123,106 @@ def search_cells(state, skin, lists, box):
         start[cell_of[i] + 1] += 1
     for c in range(columns * rows):
         start[c + 1] += start[c]
+    sorted_x, sorted_y, half_reach = lists.sorted[0], lists.sorted[1], lists.sorted[2]
     for i in range(grains):
         c = cell_of[i]
-        cell_order[start[c]] = i
+        a = start[c]
         start[c] += 1
+        cell_order[a] = i
+        sorted_x[a] = state[0, i]
+        sorted_y[a] = state[1, i]
+        half_reach[a] = state[2, i] + math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + 0.5 * skin
     for c in range(columns * rows, 0, -1):
         start[c] = start[c - 1]
     start[0] = 0
-    return columns, rows
+    return columns, rows, cell_width
 
 
 @kernel
-def near(state, i, j, skin, box):
-    """True where grains i and j may touch before the list is next rebuilt."""
-    dx = state[0, j] - state[0, i]
-    dy = state[1, j] - state[1, i]
-    if box is not None:
-        turns = np.rint(dy * box[3])
-        dx -= turns * box[4]
-        dy -= turns * box[2]
-        dx -= box[0] * np.rint(dx * box[1])
-    reach = state[2, i] + state[2, j] + skin
-    reach += math.sqrt(state[3, i] ** 2 + state[4, i] ** 2) + math.sqrt(
-        state[3, j] ** 2 + state[4, j] ** 2
-    )
-    return dx * dx + dy * dy < reach * reach
+def window_above(column, columns, shifted, wrap_x):
+    """Columns of the next row in which partners of a cell may be: (first of them, how many), going on round a periodic side.
+
+    ``shifted``: how many columns that row is shifted sideways.
+    """
+    low = column - 1 - math.ceil(shifted)
+    high = column + 1 - math.floor(shifted)
+    if not wrap_x:
+        low = max(low, 0)
+        return low, min(high, columns - 1) - low + 1
+    count = high - low + 1
+    return (low % columns, count) if count < columns else (0, columns)
+
+
+@kernel
+def append_near(a, begin, end, pairs, lists, box):
+    """Append the near pairs of the grain at place ``a`` of the cells with those from ``begin`` to ``end``, without a branch.
+
+    Returns how many pairs there are now, or -1 if they might not fit or did not before.
+    """
+    first, second, cell_order = lists.first, lists.second, lists.cell_order
+    x, y, extent = lists.sorted[0], lists.sorted[1], lists.sorted[2]
+    if pairs < 0 or pairs + end - begin > first.shape[0]:
+        return -1
+    for b in range(begin, end):
+        dx = x[b] - x[a]
+        dy = y[b] - y[a]
+        if box is not None:
+            turns = np.rint(dy * box[3])
+            dx -= turns * box[4]
+            dy -= turns * box[2]
+            dx -= box[0] * np.rint(dx * box[1])
+        reach = extent[a] + extent[b]
+        first[pairs] = cell_order[a]
+        second[pairs] = cell_order[b]
+        pairs += 1 if dx * dx + dy * dy < reach * reach else 0
+    return pairs
 
 
 @kernel
 def find_pairs(state, skin, lists, box):
-    """List every near pair once in ``first``, ``second``. Returns their number, or -1 if the arrays are too short."""
-    columns, rows = search_cells(state, skin, lists, box)
+    """List every near pair once in ``first``, ``second``. Returns their number, or -1 if the arrays are too short.
+
+    Each cell looks at itself, to the right, and at the row above, so that no two cells meet twice.
+    """
+    columns, rows, cell_width = search_cells(state, skin, lists, box)
     wrap_x = False
     wrap_y = False
-    sheared = False
+    shift = 0.0
     if box is not None:
         wrap_x = box[1] > 0.0
         wrap_y = box[3] > 0.0
-        sheared = box[4] != 0.0
-    cell_start, cell_order = lists.cell_start, lists.cell_order
-    first, second = lists.first, lists.second
-    capacity = first.shape[0]
+        shift = box[4] if wrap_y else 0.0
+    start = lists.cell_start
     pairs = 0
     for row in range(rows):
+        here = row * columns
+        above = here + columns
+        has_above = row + 1 < rows
+        shifted = 0.0
+        anywhere = rows == 2 and shift != 0.0  # each is above the other, shifted and not shifted
+        if row + 1 == rows and rows > 2 and wrap_y:
+            above = 0
+            has_above = True
+            shifted = shift / cell_width
+            # Along an open direction a shifted grain may have been put into the last column, however far it is.
+            anywhere = shift != 0.0 and not wrap_x
         for column in range(columns):
-            here = row * columns + column
-            for step in range(-1, 2):
-                other_row = row + step
-                crossed = 0
-                if other_row < 0 or other_row >= rows:
-                    if not wrap_y:
-                        continue
-                    crossed = 1 if other_row >= rows else -1
-                    other_row -= crossed * rows
-                if wrap_y and rows < 3 and step != 0 and not (rows == 2 and step == 1):
-                    continue  # with one or two rows, another step meets the same rows again
-                left = column - 1
-                right = column + 1
-                if sheared and (crossed != 0 or rows < 3):
-                    # The image above is shifted sideways by any amount: look along the whole row.
-                    left = 0
-                    right = columns - 1
-                if wrap_x and right - left + 1 >= columns:
-                    left = 0
-                    right = columns - 1
-                for raw in range(left, right + 1):
-                    c = raw
-                    if c < 0 or c >= columns:
-                        if not wrap_x:
-                            continue
-                        c += columns if c < 0 else -columns
-                    there = other_row * columns + c
-                    if there < here:
-                        continue
-                    for a in range(cell_start[here], cell_start[here + 1]):
-                        i = cell_order[a]
-                        begin = cell_start[there]
-                        if there == here:
-                            begin = a + 1
-                        for b in range(begin, cell_start[there + 1]):
-                            j = cell_order[b]
-                            if near(state, i, j, skin, box):
-                                if pairs == capacity:
-                                    return -1
-                                first[pairs] = i
-                                second[pairs] = j
-                                pairs += 1
+            right = min(column + 1, columns - 1)
+            round_x = wrap_x and column + 1 == columns and columns > 2
+            low, count = window_above(column, columns, shifted, wrap_x)
+            if anywhere:
+                low, count = 0, columns
+            beyond = max(low + count - columns, 0)
+            for a in range(start[here + column], start[here + column + 1]):
+                pairs = append_near(a, a + 1, start[here + right + 1], pairs, lists, box)
+                if round_x:
+                    pairs = append_near(a, start[here], start[here + 1], pairs, lists, box)
+                if has_above:
+                    end = start[above + low + count - beyond]
+                    pairs = append_near(a, start[above + low], end, pairs, lists, box)
+                    pairs = append_near(a, start[above], start[above + beyond], pairs, lists, box)
+                if pairs < 0:
+                    return -1
     return pairs
 
 

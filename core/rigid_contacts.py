@@ -119,16 +119,19 @@ def touch(primitives, m, x, y, s, u, v):
     if kind == EDGE:
         ux = primitives[m, 3]
         uy = primitives[m, 4]
-        if beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
-            return -1.0, 0.0, 0.0, 1.0, 0.0
-        if beyond(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
-            return -1.0, 0.0, 0.0, 1.0, 0.0
         distance = ux * dy - uy * dx
         side = 1.0 if distance >= 0.0 else -1.0
         nx = -side * uy
         ny = side * ux
         h, _ = support(s, u, v, nx, ny)
-        return h + radius - side * distance, nx, ny, h, 0.0
+        overlap = h + radius - side * distance
+        if overlap <= 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        if beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        if beyond(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
+            return -1.0, 0.0, 0.0, 1.0, 0.0
+        return overlap, nx, ny, h, 0.0
     r = math.sqrt(dx * dx + dy * dy)
     if kind == DISC:
         if r == 0.0:
