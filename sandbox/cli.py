@@ -293,9 +293,9 @@ def _replay(options: argparse.Namespace) -> int:
 
     output = _output(options, (1280, 720), 30.0)
     log = read_log(options.log)
-    from sandbox.session import Session
+    from sandbox.replay import session_of
 
-    Session(log.scene, log.packing, log.seed, log.settings)  # finds mistakes before any work
+    session_of(log)  # finds mistakes before any work
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.views.record import repeat
 

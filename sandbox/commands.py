@@ -5,7 +5,7 @@ A command takes effect between two increments, never inside one, and is stamped 
 
 from __future__ import annotations
 
-import math
+import sys
 from dataclasses import asdict, dataclass, fields
 from typing import Any, TypeGuard, get_args
 
@@ -85,11 +85,15 @@ class Redo:
 
 @dataclass(frozen=True)
 class Place:
-    """Put a grain of ``kind``, "regular" or "auxetic", at (x, y) [R], or near it where there is more room."""
+    """Put a grain of ``kind``, "regular" or "auxetic", at (x, y) [R], or near it where there is more room.
+
+    ``goes_on``, here and below: part of the same stroke of a brush as the edit before, and undone with it.
+    """
 
     x: float
     y: float
     kind: str
+    goes_on: bool = False
 
 
 @dataclass(frozen=True)
@@ -99,6 +103,7 @@ class Erase:
     x: float
     y: float
     radius: float
+    goes_on: bool = False
 
 
 @dataclass(frozen=True)
@@ -109,6 +114,7 @@ class Retype:
     y: float
     radius: float
     kind: str
+    goes_on: bool = False
 
 
 @dataclass(frozen=True)
@@ -168,9 +174,9 @@ def from_data(data: dict[str, Any]) -> Command:
         elif name == "increment":
             if isinstance(value, bool) or not isinstance(value, int) or value < 0:
                 raise InputError("command 'recall': increment must be a whole number from 0 on")
-        elif name == "on":
+        elif name in ("on", "goes_on"):
             if not isinstance(value, bool):
-                raise InputError("command 'protocol': on must be true or false")
+                raise InputError(f"command {data['command']!r}: {name} must be true or false")
         elif name == "value":
             if not isinstance(value, (bool, int, float, str)):
                 raise InputError("command 'change': value must be a number, a word or a switch")
@@ -193,7 +199,7 @@ def _line(value: object) -> tuple[tuple[float, float], ...]:
 
 
 def _finite(value: object) -> TypeGuard[float]:
-    """Is it a number, and not inf or nan?"""
+    """Is it a number that a float holds, and not inf or nan?"""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return False
-    return math.isfinite(value)
+    return abs(value) <= sys.float_info.max

@@ -23,6 +23,8 @@ class Course:
     last_exit: tuple[float, float] = (0.0, 0.0)  # stroke and force when a grain last left
     moving: bool = False  # the grains go on by themselves
     touched: bool = False  # something was changed: relax once where things stand
+    edited: bool = False  # grains or walls are no longer those that the scene came with
+    next_label: int = 0  # of a grain that is placed: larger than any that there was
     notices: list[str] = field(default_factory=list)
     announced: dict[str, int] = field(default_factory=dict)  # grains out at the latest of a kind
     remarks: Remarks = field(default_factory=Remarks)

@@ -84,7 +84,7 @@ def _place(setup: Setup, values: Values, at: Point, kind: str, label: int) -> Ed
     if len(packing) >= MOST_GRAINS:
         raise InputError(Text("there are {most} grains, and no more fit", most=MOST_GRAINS))
     if label >= MAX_LABEL:
-        raise InputError("all numbers for grains are used up: save the scene and open it again")
+        label = int(np.setdiff1d(np.arange(len(packing) + 1), packing.label)[0])
     here = np.array([at])
     x, y = here.T if packing.box is None else room.folded(here, packing.box)
     if not inside(setup.outline, x, y)[0]:

@@ -5,6 +5,7 @@ A log replays to the same state bits, on a slower machine too, since it names in
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 from dataclasses import dataclass
@@ -14,16 +15,21 @@ from typing import Any, TypeGuard
 from core.errors import InputError
 from core.files import atomic_write
 from sandbox.commands import Command, from_data, to_data
+from sandbox.scene_file import SceneFile, parse_scene
 
 FORMAT = "auxetic-sandbox log"
 VERSION = 1
+VERSION_WITH_START = 2  # of a log that holds a scene file
 LARGEST = 256 * 1024 * 1024  # bytes
 MOST_INCREMENTS = 10_000_000
 
 
 @dataclass(frozen=True)
 class Log:
-    """A run: ``commands`` are (increments finished before, command), in order; it ended after ``end`` increments in ``hash``."""
+    """A run: ``commands`` are (increments finished before, command), in order; it ended after ``end`` increments in ``hash``.
+
+    The log of a run that began with a scene file holds that file, both parts of it, and needs no other.
+    """
 
     scene: str
     packing: str
@@ -32,25 +38,30 @@ class Log:
     commands: tuple[tuple[int, Command], ...]
     end: int
     hash: str
+    start: SceneFile | None = None  # what it began with, if not with the scene as it is built
 
 
 def write_log(path: str | os.PathLike[str], log: Log) -> None:
     """Write a log whole or not at all. Raises OSError as the system does."""
+    start = log.start
     head = {
         "format": FORMAT,
-        "version": VERSION,
+        "version": VERSION if start is None else VERSION_WITH_START,
         "scene": log.scene,
         "packing": log.packing,
         "seed": log.seed,
         "settings": log.settings,
     }
+    if start is not None:
+        data = base64.b64encode(start.data).decode("ascii")
+        head["start"] = {"text": start.text.decode("utf-8"), "grains": data}
     lines = [
         head,
         *({"at": at, **to_data(command)} for at, command in log.commands),
         {"end": log.end, "hash": log.hash},
     ]
     with atomic_write(path) as file:
-        file.write("".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines).encode())
+        file.write("".join(json.dumps(line) + "\n" for line in lines).encode())
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
@@ -72,9 +83,10 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(
             f"{path}: not a log of this program (its first line does not say {FORMAT!r})"
         )
-    if head.get("version") != VERSION:
+    version = head.get("version")
+    if isinstance(version, bool) or version not in (VERSION, VERSION_WITH_START):
         raise InputError(
-            f"{path}: log version {head.get('version')!r}, this program reads {VERSION}; update the program"
+            f"{path}: log version {version!r}, this program reads {VERSION_WITH_START}; update the program"
         )
     scene, packing, seed, settings = (
         head.get(key) for key in ("scene", "packing", "seed", "settings")
@@ -86,6 +98,8 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         and isinstance(settings, dict)
     ):
         raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
+    if ("start" in head) != (version == VERSION_WITH_START):
+        raise InputError(f"{path}: line 1: a log of version {VERSION_WITH_START} has a start")
     if len(records) < 2 or "end" not in last:
         raise InputError(
             f"{path}: the log is truncated (its last line does not say where the run ended)"
@@ -108,7 +122,24 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(
             f"{path}: the last line must give 'end', a number of increments, and 'hash'"
         )
-    return Log(scene, packing, seed, settings, tuple(commands), end, digest)
+    start = _start(path, head["start"]) if version == VERSION_WITH_START else None
+    return Log(scene, packing, seed, settings, tuple(commands), end, digest, start)
+
+
+def _start(path: Path, start: object) -> SceneFile:
+    """The scene file that a log holds. Raises InputError as for the file itself."""
+    if not isinstance(start, dict) or set(start) != {"text", "grains"}:
+        raise InputError(f"{path}: line 1: start must have text and grains")
+    text, grains = start["text"], start["grains"]
+    if not isinstance(text, str) or not isinstance(grains, str):
+        raise InputError(f"{path}: line 1: start must have text and grains")
+    try:
+        data = base64.b64decode(grains, validate=True)
+        return parse_scene(f"{path}: start", text.encode(), data)
+    except ValueError as error:  # an InputError is one, too
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path}: line 1: the grains of start are damaged") from None
 
 
 def _record(path: Path, number: int, line: str) -> dict[str, Any]:

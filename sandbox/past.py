@@ -8,7 +8,7 @@ from core.engine_state import BodyState
 from core.errors import InputError
 from core.packing import Packing
 from sandbox.checkpoints import MOST_BYTES, Checkpoint
-from sandbox.commands import Change, Command, Recall
+from sandbox.commands import Change, Command, Erase, Place, Recall, Retype
 from sandbox.run import Run
 from scenes.scene import Scene, Setup, Values
 
@@ -53,7 +53,9 @@ class Past:
         self._redo.clear()
         kind = command.name if isinstance(command, Change) else type(command)
         near = finished - self._latest[1] <= (0 if isinstance(command, Recall) else ONE_GESTURE)
-        goes_on = isinstance(command, (Change, Recall)) and kind == self._latest[0] and near
+        stroke = isinstance(command, (Place, Erase, Retype)) and command.goes_on
+        same_gesture = stroke or (isinstance(command, (Change, Recall)) and near)
+        goes_on = same_gesture and kind == self._latest[0]
         self._latest = kind, finished
         same_state = bool(self._undo) and self._undo[-1].checkpoint is before.checkpoint
         if not (self._undo and (goes_on or same_state)):

@@ -10,6 +10,13 @@ from sandbox.log import Log
 from sandbox.session import Progress, Session
 
 
+def session_of(log: Log) -> Session:
+    """The session that a log began with. Raises InputError if there is none such."""
+    if log.start is not None:
+        return Session.from_file(log.start)
+    return Session(log.scene, log.packing, log.seed, log.settings)
+
+
 def replay(
     log: Log, progress: Progress | None = None, slice_iterations: int = 400
 ) -> Iterator[Session]:
@@ -17,7 +24,7 @@ def replay(
 
     Raises InputError if the log does not fit the scene.
     """
-    session = Session(log.scene, log.packing, log.seed, log.settings)
+    session = session_of(log)
     session.build(progress)
     yield session
     waiting = deque(log.commands)

@@ -15,13 +15,16 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
 from core.rigid import Point
 from sandbox.checkpoints import Checkpoint, Checkpoints, bare
+from sandbox.commands import Edit
 from sandbox.course import Course
+from sandbox.editing import edited
 from sandbox.frame import Frame
 from sandbox.history import Event, History
 from sandbox.reading import BOX, follow_drive, read_off, tell_what_stopped
 from sandbox.snapshot import View, take
-from scenes.scene import Check, Earlier, Handle, Latest, Scene, Setup, Track, Values
+from scenes.scene import Check, Earlier, Handle, Latest, Remarks, Scene, Setup, Track, Values
 
+TOO_TIGHT = "that was too tight for the grains: it is taken back"
 ARRIVED = 1e-6  # [R] a body this near its target is there
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
@@ -34,7 +37,11 @@ class Run:
     ) -> None:
         self.scene, self.values, self.packing_kind, self.seed = scene, values, packing_kind, seed
         self.setup = setup
-        friction = Friction(setup.friction, len(setup.packing)) if setup.friction > 0.0 else None
+        friction = None
+        if setup.friction > 0.0:
+            kept = setup.friction_state
+            friction = Friction(0.5, len(setup.packing)) if kept is None else kept.copy()
+            friction.coefficient = setup.friction
         self.engine = Quasistatic(
             setup.packing,
             setup.world,
@@ -49,7 +56,9 @@ class Run:
         self.checkpoints = Checkpoints()
         self._drive = setup.handles[0]
         self._course = Course(self._drive.direction, len(setup.packing))
+        self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
+        self._before_edit: Checkpoint | None = None  # where to go back to if it was too tight
         self.engine.begin({})
         last: Increment | None = None
         while last is None:
@@ -109,6 +118,33 @@ class Run:
         self.values = values
         self.touched()
 
+    def edit(self, command: Edit) -> None:
+        """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
+        made = edited(self.setup, self.values, command, self._course.next_label)
+        before = self._before_edit or self.present()
+        course, friction = self._course, self.engine.friction
+        if friction is not None:
+            friction.rearrange(made.source)
+            friction.forget_primitives(*made.forgotten)
+        course.initial += len(made.packing) - len(self.setup.packing)
+        course.next_label = max(course.next_label, int(made.packing.label.max(initial=-1)) + 1)
+        course.edited, course.moving = True, self.setup.drag > 0.0
+        course.remarks = Remarks()
+        course.notices.clear()
+        self.setup.packing = made.packing
+        self.setup.world.redraw(made.walls)
+        self.engine.take_over(made.packing)
+        pairs, bodies = self.engine.contacts()
+        self._last = replace(
+            self._last,
+            grain_contacts=pairs,
+            body_contacts=bodies,
+            reactions=self.engine.reactions,
+            unbalanced=np.zeros(len(made.packing)),
+        )
+        self.touched()
+        self._before_edit = before
+
     def touched(self) -> None:
         """Something was changed between two increments: one increment relaxes where things stand."""
         self._course.touched = True
@@ -143,9 +179,12 @@ class Run:
         increment = self.engine.relax(max_iterations)
         if increment is None:
             return False
-        before, self._last = self._last, increment
-        self._course.touched = False
-        earlier = Earlier(before, self.setup.packing.label)
+        if self._before_edit is not None and self._too_tight(increment):
+            return True
+        # What a change has done is nothing that the grains did.
+        before = None if self._course.touched else self._last
+        self._last, self._course.touched = increment, False
+        earlier = None if before is None else Earlier(before, self.setup.packing.label)
         tell_what_stopped(self._course, self.setup, increment)
         left = self._remove_those_gone()
         follow_drive(self._course, self.setup, increment)
@@ -155,6 +194,16 @@ class Run:
         self._course.moving = self._goes_on(left)
         self._remark(None if left else before, earlier, left)
         self._keep()
+        return True
+
+    def _too_tight(self, increment: Increment) -> bool:
+        """After an edit: if the grains cannot be relaxed, back to before it. True then."""
+        before, self._before_edit = self._before_edit, None
+        if increment.report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
+            return False
+        assert before is not None
+        self.restore(before)
+        self.say(TOO_TIGHT)
         return True
 
     def _record(self, increment: Increment) -> None:
@@ -170,8 +219,7 @@ class Run:
     def _goes_on(self, left: int) -> bool:
         """With drag: whether the grains are still on their way."""
         gravity, drag = self.setup.gravity, self.setup.drag
-        failed = self._last.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
-        if gravity is None or drag == 0.0 or failed:
+        if gravity is None or drag == 0.0 or self.failed:
             return False
         return left > 0 or self.engine.farthest_move() > AT_REST * math.hypot(*gravity) / drag
 
@@ -284,7 +332,7 @@ class Run:
         pairs, bodies = engine.contacts()
         self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
         self.checkpoints.travel(kept)
-        self._kept = kept
+        self._kept, self._before_edit = kept, None
 
     def recall(self, increment: int) -> None:
         """Go to the state after that increment, or the nearest kept before it."""
@@ -322,10 +370,17 @@ class Run:
         digest = hashlib.sha256(self.setup.packing.hash().encode() + placement)
         if self.engine.friction is not None:
             digest.update(self.engine.friction.hash().encode())
+        for wall in self.setup.world.drawn:
+            digest.update(wall.primitives().tobytes())
         return digest.hexdigest()
 
+    @property
+    def failed(self) -> bool:
+        """True if the newest increment led to nothing that can be shown."""
+        return self._last.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
+
     def checks(self) -> list[Check]:
-        """The scene's claims about this run."""
+        """The scene's claims about this run; about what a person has made, only those that hold for any scene."""
         rows = self.history
         track = Track(
             stroke=rows.column("stroke"),
@@ -335,4 +390,5 @@ class Run:
             converged=rows.column("stop_reason") == str(StopReason.CONVERGED),
             initial_grains=self._course.initial,
         )
-        return self.scene.checks(self.setup, track)
+        claims = self.scene.general_checks if self._course.edited else self.scene.checks
+        return claims(self.setup, track)

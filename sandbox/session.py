@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from typing import get_args
 
 from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
@@ -12,13 +14,19 @@ from core.warmup import compile_kernels
 from sandbox.commands import (
     Change,
     Command,
+    DrawWall,
+    Edit,
+    Erase,
+    EraseWall,
     Grab,
     Move,
+    Place,
     Protocol,
     Recall,
     Redo,
     Release,
     Reset,
+    Retype,
     Undo,
 )
 from sandbox.frame import Frame
@@ -27,13 +35,14 @@ from sandbox.log import Log
 from sandbox.log import write_log as write_log_file
 from sandbox.past import OLD_RUN_BYTES, Moment, Past, Start
 from sandbox.run import Run
+from sandbox.scene_file import SceneFile, put_into, read_scene
 from scenes import registry
 from scenes.scene import Check, Ingredients, Scene, Values
 from scenes.text import message
 
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
 COMPILE_SHARE = 0.5
-UNDOABLE = (Grab, Protocol, Reset, Change, Recall)
+UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
 
 Progress = Callable[[str, float], None]
 
@@ -53,7 +62,11 @@ class Session:
         self.packing = self.scene.check_packing(packing)
         self.seed = check_seed(seed)
         self.settings: Values = self.scene.settings(settings)
+        self._file: SceneFile | None = (
+            None  # what the scene is built from, if not from its settings
+        )
         self._first = (scene, self.packing, self.seed, dict(self.settings))
+        self._first_file: SceneFile | None = None
         self._pending: deque[Command] = deque()
         self._lock = threading.Lock()
         self._commands: list[tuple[int, Command]] = []
@@ -62,6 +75,14 @@ class Session:
         self._start: Start | None = None
         self._past = Past()
         self._progress: Progress | None = None
+
+    @classmethod
+    def from_file(cls, file: str | os.PathLike[str] | SceneFile) -> Session:
+        """A session that begins where a scene file was written. Raises InputError for one that cannot be read."""
+        kept = file if isinstance(file, SceneFile) else read_scene(file)
+        session = cls(kept.scene, kept.packing, kept.seed, kept.settings)
+        session._file = session._first_file = kept
+        return session
 
     def build(self, progress: Progress | None = None) -> None:
         """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
@@ -75,9 +96,13 @@ class Session:
             self.seed,
             lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
         )
+        if self._file is not None:
+            put_into(setup, self._file)
         start = Start(setup.packing.copy(), setup, keep_bodies(setup.world), self.settings)
-        self._run = Run(self.scene, self.settings, self.packing, self.seed, setup)
-        self._start = start
+        run = Run(self.scene, self.settings, self.packing, self.seed, setup)
+        if self._file is not None and run.failed:
+            raise InputError(f"{self._file.name}: its grains cannot be relaxed")
+        self._start, self._run = start, run
         report("ready", 1.0)
 
     def _compile(self, terms: Ingredients) -> None:
@@ -132,6 +157,8 @@ class Session:
                 self.run.follow_script(on)
             case Reset():
                 self._reset()
+            case Place() | Erase() | Retype() | DrawWall() | EraseWall():
+                self.run.edit(command)
             case Change(name, value) if self.rebuilds(command):
                 self._rebuild(name, value)
             case Change(name, value):
@@ -199,12 +226,13 @@ class Session:
             seed = check_seed(value)
         else:
             settings = scene.settings({**settings, name: value})
-        before = self.scene, self.packing, self.seed, self.settings
+        before = self.scene, self.packing, self.seed, self.settings, self._file
         self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
+        self._file = None
         try:
             self.build(self._progress)
         except InputError:
-            self.scene, self.packing, self.seed, self.settings = before
+            self.scene, self.packing, self.seed, self.settings, self._file = before
             raise
 
     # Running.
@@ -263,9 +291,8 @@ class Session:
         """All since the session began. Raises RuntimeError in the middle of an increment: finish it first."""
         if self.busy:
             raise RuntimeError("finish the increment before taking the log")
-        scene, packing, seed, settings = self._first
-        commands = tuple(self._commands)
-        return Log(scene, packing, seed, settings, commands, self._finished, self.state_hash())
+        commands, end, digest = tuple(self._commands), self._finished, self.state_hash()
+        return Log(*self._first, commands, end, digest, self._first_file)
 
     def write_log(self, path: str) -> None:
         """Write the log whole or not at all."""

@@ -213,10 +213,13 @@ class GravityHopper(Scene):
         return Remarks((text,), found)
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
+        return [*super().checks(setup, track), _nothing_hangs(setup, track)]
+
+    def general_checks(self, setup: Setup, track: Track) -> list[Check]:
         funnel = setup.world["funnel"]
         moved = funnel.position[0] - funnel.home[0]
         there = replace(setup, outline=[(x + moved, y) for x, y in setup.outline])
-        return [*super().checks(there, track), _nothing_hangs(setup, track)]
+        return super().general_checks(there, track)
 
 
 def _pull(values: Values) -> tuple[Point, float]:

@@ -20,6 +20,7 @@ _MODULES = (
     "intruder",
     "hopper",
     "gravity_hopper",
+    "workshop",
 )
 _SCENES: dict[str, Scene] = {}
 _S = TypeVar("_S", bound=type[Scene])

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.errors import InputError
+from core.friction import Friction
 from core.generate import KINDS, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Settings
@@ -71,6 +72,7 @@ class Setup:
     bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
+    friction_state: Friction | None = None  # what contacts remember at the start; None: nothing
     friction: float = 0.0  # Coulomb coefficient, with bodies too; 0: the term does not exist
     gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
@@ -245,7 +247,11 @@ class Scene(ABC):
         return Remarks()
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
-        """Claims that must hold for any run of any scene; subclasses add their own."""
+        """Claims that must hold; subclasses add their own to those for any scene."""
+        return self.general_checks(setup, track)
+
+    def general_checks(self, setup: Setup, track: Track) -> list[Check]:
+        """Claims that must hold for any run of any scene, whatever a person has put into it."""
         return [_grains_kept(setup, track), _nothing_inside(setup), _converged(track)]
 
 

@@ -1,0 +1,106 @@
+"""An almost empty box for what a class wants to try: walls are drawn into it, grains placed, and a disc pushes them."""
+
+from __future__ import annotations
+
+import math
+
+from core.errors import InputError
+from core.generate import pack
+from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.parameter import Parameter
+from scenes.registry import register
+from scenes.scene import (
+    FRICTION,
+    MATERIAL,
+    SOLVER,
+    Handle,
+    Progress,
+    Scene,
+    Setup,
+    Values,
+    recipe,
+    solver,
+)
+
+WALL = 0.8  # thickness [R]
+MARGIN = 1.0  # between the disc and the walls at both ends of the scripted push [R]
+FULLEST = 0.8  # packing fraction at the start: there is to be room to make things
+
+
+@register
+class Workshop(Scene):
+    name = "workshop"
+    title = "Workshop"
+    question = "What can you build that locks, and what always gives way?"
+    about = (
+        "A box with a few grains and a disc in your hand. "
+        "Draw walls, place grains of both kinds, push, and keep what you made as a file."
+    )
+    default_steps = 1000
+    parameters = (
+        Parameter("grains", 40, "", 0, 3000, "number of grains at the start"),
+        Parameter("width", 31.0, "R", 8.0, 120.0, "width of the box"),
+        Parameter("height", 20.0, "R", 8.0, 90.0, "height of the box"),
+        Parameter("intruder_radius", 2.0, "R", 0.5, 10.0, "radius of the disc"),
+        Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
+        *MATERIAL,
+        *SOLVER,
+    )
+
+    def validate(self, values: Values) -> None:
+        width, height = float(values["width"]), float(values["height"])
+        radius = float(values["intruder_radius"])
+        if 2.0 * radius + 4.0 * MARGIN > min(width, height):
+            raise InputError(
+                "the disc does not fit into the box: raise width and height or lower intruder_radius"
+            )
+        area = int(values["grains"]) * recipe(values, "mixed").mean_area()
+        if area > FULLEST * (width * height - math.pi * radius**2):
+            raise InputError("so many grains leave no room: lower grains, or raise width or height")
+
+    def steps(self, values: Values) -> int:
+        return max(2, math.floor(2.0 * _way(values) / float(values["step"]) + 1e-6))
+
+    def build(
+        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+    ) -> Setup:
+        width, height = float(values["width"]), float(values["height"])
+        radius = float(values["intruder_radius"])
+        outline: list[Point] = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
+        disc = RigidBody(
+            "intruder",
+            "intruder",
+            position=(radius + MARGIN, 0.5 * height),
+            discs=[(0.0, 0.0, radius)],
+            held=True,
+        )
+        world = RigidWorld([wall("walls", outline, WALL, closed=True), disc])
+        return Setup(
+            packing=pack(
+                recipe(values, packing),
+                seed=seed,
+                outline=outline,
+                world=world,
+                count=int(values["grains"]),
+                progress=progress,
+            ),
+            world=world,
+            solver=solver(values),
+            handles=(Handle("intruder", "disc", (1.0, 0.0), radius),),
+            bounds=(-WALL, -WALL, width + WALL, height + WALL),
+            outline=outline,
+            friction=float(values["friction"]),
+        )
+
+    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+        """To the other end and back."""
+        if increment >= self.steps(values):
+            return None
+        way, home = _way(values), setup.world["intruder"].home
+        gone = min((increment + 1) * setup.solver.step, 2.0 * way)
+        return {"intruder": (home[0] + (gone if gone <= way else 2.0 * way - gone), home[1])}
+
+
+def _way(values: Values) -> float:
+    """From one end of the scripted push to the other [R]."""
+    return float(values["width"]) - 2.0 * (float(values["intruder_radius"]) + MARGIN)
