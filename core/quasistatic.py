@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.coincidence import part_coincident
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
@@ -171,6 +172,8 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
         self._moved, self._stopped = {}, {}
+        if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
+            self._contacts = None
         self._placement = self.world.placement()
         for name, target in targets.items():
             push = self.reactions[self.world.index(name)]

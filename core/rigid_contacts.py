@@ -134,8 +134,9 @@ def touch(primitives, m, x, y, s, u, v):
         return overlap, nx, ny, h, 0.0
     r = math.sqrt(dx * dx + dy * dy)
     if kind == DISC:
-        if r == 0.0:
-            return -1.0, 0.0, 0.0, 1.0, 0.0
+        if r == 0.0:  # any direction is as good as any other
+            h, _ = support(s, u, v, 1.0, 0.0)
+            return h + radius, 1.0, 0.0, h, 0.0
         nx = dx / r
         ny = dy / r
         h, slope = support(s, u, v, nx, ny)
