@@ -1,7 +1,7 @@
 """Which part of the window belongs to what: header, canvases, panel, plot strip, time line, status line.
 
-The canvases take what is left. In a small window or at a large UI scale the panel gives way first, then the plot strip,
-the time line and the header; the status line, which says whether the picture can be believed, stays.
+The canvases take what is left. In a small window or at a large UI scale the panel gives way first, then the time line,
+the plot strip and the header; the status line, which says whether the picture can be believed, stays.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import pygame
 
 HEADER = 44.0  # heights at scale 1 [px]
 STATUS = 34.0
-TIMELINE = 34.0
+TIMELINE = 38.0
 PLOT_LEAST = 104.0
 PLOT_MOST = 190.0
 PLOT_SHARE = 0.20  # of the window's height
@@ -62,10 +62,10 @@ def layout(
     side = round(PANEL * scale) if panel else 0
     if side > PANEL_SHARE * width:
         side = 0
-    if height - status - line - header - plot < least or width - side < PLOT_WIDTH * scale:
-        plot = 0
     if height - status - line - header - plot < least:
         line = 0
+    if height - status - line - header - plot < least or width - side < PLOT_WIDTH * scale:
+        plot = 0
     if height - status - line - header - plot < least:
         header = 0
     canvas = max(height - status - line - header - plot, 0)

@@ -11,14 +11,20 @@ from sandbox.language import Section, decimal_sign, say
 
 __all__ = [
     "BROKEN",
+    "BUTTONS",
+    "BUTTONS_HELP",
+    "EVENTS",
     "FORCE_UNIT",
     "KINDS",
     "KINDS_SHORT",
     "LENGTH_UNIT",
     "PACKINGS",
     "PERCENT",
+    "SECTIONS",
     "STOPPED",
     "STRESS_UNIT",
+    "TOOLS",
+    "TOOLS_HELP",
     "VIEWS",
     "Section",
     "about",
@@ -40,10 +46,16 @@ PERCENT = "%"
 
 BROKEN = frozenset({"not finite", "collapsed"})  # ends of a relaxation that leave no picture to believe
 
+BUTTONS = Section("buttons")
+BUTTONS_HELP = Section("buttons_help")
+EVENTS = Section("events")
 KINDS = Section("kinds")
 KINDS_SHORT = Section("kinds_short")
 PACKINGS = Section("packings")
+SECTIONS = Section("sections")
 STOPPED = Section("stopped")
+TOOLS = Section("tools")
+TOOLS_HELP = Section("tools_help")
 VIEWS = Section("views")
 
 

@@ -13,21 +13,31 @@ import pygame
 
 from core.errors import InputError
 from sandbox import language
-from sandbox.commands import Command
+from sandbox.commands import Change, Command
 from sandbox.draw import words
+from sandbox.draw.camera import Camera
 from sandbox.draw.cards import MenuEntry, draw_error
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
 from sandbox.draw.views import view_after
 from sandbox.draw.warmup import Warmup
+from sandbox.frame import Frame
 from sandbox.views.solver_thread import Snapshot
+from sandbox.views.window_arrows import Arrows
+from sandbox.views.window_brush import Brush
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
+from sandbox.views.window_focus import Focus
+from sandbox.views.window_general import GeneralSection
 from sandbox.views.window_hand import REACH, Mouse
 from sandbox.views.window_help import HelpPage
+from sandbox.views.window_inspect import Inspector
 from sandbox.views.window_keys import Action, action_of, packing_for
 from sandbox.views.window_menu import Choice, Menu
+from sandbox.views.window_panel import Panel
 from sandbox.views.window_parts import Part
 from sandbox.views.window_run import Run
+from sandbox.views.window_settings import ParameterSection, Settings
+from sandbox.views.window_timeline import Timeline
 from scenes import registry
 from scenes.text import message
 
@@ -95,13 +105,33 @@ class App:
         self.show_help = False
         self.help = HelpPage()
         self.mouse = Mouse()
-        self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.screen = open_display(size)
         self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
         scenes = [registry.get(name) for name in registry.names()]
         entries = [MenuEntry(s.name, s.title, s.question, s.about) for s in scenes]
         packings = dict.fromkeys(packing for s in scenes for packing in s.packings)
         self.menu = Menu(entries, tuple(packings))
+        self.focus = Focus(self.handle)
+        self.settings = Settings(self)
+        self.timeline = Timeline(self)
+        self.inspector = Inspector(self)
+        self.brush = Brush(self)
+        self.arrows = Arrows(self)
+        own = [ParameterSection(name, self.settings) for name in ("grains", "geometry", "solver")]
+        self.panel = Panel(self, folded={"solver"})
+        self.panel.sections += [GeneralSection(self), self.inspector, self.brush, *own]
+        self.focus.groups = [self.arrows.stops, self.panel.stops, self.timeline.stops]
+        # While a scene runs they see events first, in this order.
+        self.parts: list[Part] = [
+            self.panel,
+            self.timeline,
+            self.settings,
+            self.brush,
+            self.inspector,
+            self.arrows,
+            self.focus,
+        ]
+        self.arrange()
         self._toasts: list[tuple[float, str]] = []
         self._hinted = False  # has a person found out how to begin?
         self._dirty = True  # is there something new to draw?
@@ -119,6 +149,8 @@ class App:
         """Run a scene. Raises InputError for one that does not exist."""
         self.run.start(scene, settings)
         self.mouse = Mouse()
+        self.focus.leave()
+        self.brush.on = False
         self.renderer.forget()
         self.menu.choose(scene)
         self.show_menu = self.show_help = False
@@ -136,6 +168,26 @@ class App:
         """A command to the solver."""
         self.run.send(command)
         self._dirty = True
+
+    def arrange(self) -> None:
+        """Divide the window anew: the panel may have been folded."""
+        self.renderer.arrange(panel=not self.panel.hidden, timeline=True)
+        self._dirty = True
+
+    def panes(self) -> tuple[tuple[Frame, Camera, pygame.Rect], ...]:
+        """What is drawn where, from the left."""
+        frame = self.run.snapshot.frame
+        return (
+            () if frame is None else ((frame, self.renderer.camera, self.renderer.layout.canvas),)
+        )
+
+    def redraw(self, changed: bool) -> None:
+        """Draw the next picture if something has changed."""
+        self._dirty |= changed
+
+    def has_begun(self) -> None:
+        """A person has found out how to begin."""
+        self._hinted = True
 
     # -- one picture --
 
@@ -223,7 +275,8 @@ class App:
         if self.show_menu:
             wanted = self.menu.cursor()
         elif not self.show_help:
-            wanted = self.mouse.cursor()
+            own = (part.cursor() for part in self._parts())
+            wanted = next((cursor for cursor in own if cursor is not None), self.mouse.cursor())
         if wanted != self._cursor:
             self._cursor = wanted
             with contextlib.suppress(pygame.error):  # not every screen has these cursors
@@ -238,6 +291,7 @@ class App:
 
     def handle(self, event: pygame.event.Event) -> None:
         """One event."""
+        self.focus.watch(event)
         if event.type == pygame.QUIT:
             self.running = False
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):
@@ -248,7 +302,7 @@ class App:
         elif event.type == pygame.KEYDOWN:
             action = action_of(event)
             if action is not None:
-                self._act(action)
+                self.act(action)
         elif event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             if self.show_menu:
                 self._mouse_in_menu(event)
@@ -292,7 +346,8 @@ class App:
         ):
             self._hinted = True
 
-    def _act(self, action: Action) -> None:
+    def act(self, action: Action) -> None:
+        """What a key or a button asks for."""
         if action is Action.SCREENSHOT:
             name = f"-{self.run.scene}" if self.run.scene and not self.show_menu else ""
             self.toast(save_picture(self.renderer.surface, f"sandbox{name}"))
@@ -335,14 +390,13 @@ class App:
             return
         if action is Action.PAUSE:
             self.run.pause_or_go_on()
-        elif action in (Action.STEP, Action.RIGHT):
+        elif action is Action.STEP:
             self.run.step()
         elif action is Action.RESET:
             self.mouse.forget()
             self.run.reset()
         elif action is Action.NEXT_VIEW:
-            self.renderer.set_view(view_after(self.renderer.view).name)
-            self.toast(words.VIEW.format(view=self.renderer.view.title))
+            self.change_view(view_after(self.renderer.view).name)
         elif action is Action.CHAINS:
             self._switch_chains()
         elif action is Action.PROTOCOL and frame is not None:
@@ -351,13 +405,30 @@ class App:
             self.run.drive(not frame.protocol)
             self.toast(words.DRIVE_OFF if frame.protocol else words.DRIVE_ON)
         elif action is Action.NEW_SEED:
-            self._forget_picture()
+            self.change_seed(None)
+        elif (packing := self._packing(action)) is not None:
+            self.change_packing(packing)
+
+    def change_view(self, name: str) -> None:
+        """Look at the grains another way."""
+        self.renderer.set_view(name)
+        self.toast(words.VIEW.format(view=self.renderer.view.title))
+
+    def change_seed(self, seed: int | None) -> None:
+        """Pack by other chances; None: by the next seed."""
+        self.forget_picture()
+        if seed is None:
             self.run.change_seed()
-            self.toast(words.NEW_SEED.format(seed=self.run.seed))
-        elif (packing := self._packing(action)) not in (None, self.run.packing):
-            self._forget_picture()
-            self.run.change_packing(str(packing))
-            self.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(str(packing), packing)))
+        else:
+            self.send(Change("seed", seed))
+        self.toast(words.NEW_SEED.format(seed=self.run.seed))
+
+    def change_packing(self, packing: str) -> None:
+        """Pack other grains, if they are others."""
+        if packing != self.run.packing:
+            self.forget_picture()
+            self.run.change_packing(packing)
+            self.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(packing, packing)))
 
     def _switch_chains(self) -> None:
         if self.renderer.view.only_chains:
@@ -397,7 +468,8 @@ class App:
         pygame.display.set_caption(words.SPLASH_TITLE)
         self.toast(words.NEW_LANGUAGE.format(language=language.find("name")))
 
-    def _forget_picture(self) -> None:
+    def forget_picture(self) -> None:
+        """The scene is to be built anew: nothing is held, the scales begin afresh."""
         self.mouse.forget()
         self.renderer.forget()
 

@@ -35,6 +35,18 @@ class Action(enum.Enum):
     RIGHT = enum.auto()
     UP = enum.auto()
     DOWN = enum.auto()
+    FOLD = enum.auto()
+    BRUSH = enum.auto()
+    NEXT_CONTACT = enum.auto()
+    UNDO = enum.auto()
+    REDO = enum.auto()
+    BACKWARD = enum.auto()
+    FORWARD = enum.auto()
+    SLOWER = enum.auto()
+    FASTER = enum.auto()
+    COMPARE = enum.auto()
+    RECORD = enum.auto()
+    EXPORT = enum.auto()
 
 
 PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
@@ -59,10 +71,21 @@ _SIGNS = {
     "+": Action.LARGER,
     "=": Action.LARGER,
     "-": Action.SMALLER,
+    "k": Action.FOLD,
+    "b": Action.BRUSH,
+    "i": Action.NEXT_CONTACT,
+    "z": Action.UNDO,
+    "Z": Action.REDO,
+    "[": Action.BACKWARD,
+    "]": Action.FORWARD,
+    ",": Action.SLOWER,
+    ".": Action.FASTER,
+    "c": Action.COMPARE,
+    "g": Action.RECORD,
+    "e": Action.EXPORT,
 }
 
 _KEYS = {
-    pygame.K_TAB: Action.MENU,
     pygame.K_F1: Action.HELP,
     pygame.K_F12: Action.SCREENSHOT,
     pygame.K_ESCAPE: Action.BACK,
@@ -76,15 +99,22 @@ _KEYS = {
     pygame.K_KP_MINUS: Action.SMALLER,
 }
 
+_COMMANDS = {pygame.K_z: Action.UNDO, pygame.K_y: Action.REDO}  # with Ctrl
+_BRACKETS = ("[", "]")
+
 
 def action_of(event: pygame.event.Event) -> Action | None:
     """What a KEYDOWN event asks for, if anything."""
     if event.key in _KEYS:
         return _KEYS[event.key]
-    if getattr(event, "mod", 0) & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META):
-        return None
+    mod = getattr(event, "mod", 0)
+    if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and event.key in _COMMANDS:
+        return Action.REDO if mod & pygame.KMOD_SHIFT else _COMMANDS[event.key]
+    if mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META):
+        # AltGr, with which many keyboards write brackets, may come as Ctrl and Alt.
+        return _SIGNS.get(getattr(event, "unicode", "")) if event.unicode in _BRACKETS else None
     sign = getattr(event, "unicode", "") or (chr(event.key) if 0 < event.key < 128 else "")
-    return _SIGNS.get(sign.lower())
+    return _SIGNS.get(sign) or _SIGNS.get(sign.lower())
 
 
 def packing_for(action: Action, packings: Sequence[str], current: str) -> str | None:

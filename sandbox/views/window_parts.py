@@ -25,6 +25,9 @@ class Part(Protocol):
     def draw(self, painter: Painter) -> None:
         """Draw onto the renderer's surface."""
 
+    def cursor(self) -> int | None:
+        """The system cursor that it wants where the mouse is now; None: that is not its place."""
+
 
 class Silent:
     """A part that does nothing: the beginning of one that does little."""
@@ -47,3 +50,7 @@ class Silent:
     def draw(self, painter: Painter) -> None:
         """Draws nothing."""
         del painter
+
+    def cursor(self) -> int | None:
+        """Wants no cursor."""
+        return None

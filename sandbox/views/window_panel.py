@@ -1,0 +1,481 @@
+"""The panel at the right: sections of controls, for mouse, touch and keyboard alike."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Protocol
+
+import pygame
+
+from sandbox.draw.layout import PANEL
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import SMALL
+from sandbox.draw.theme import channels
+from sandbox.draw.widgets import (
+    PAD,
+    TARGET,
+    Control,
+    Heading,
+    Place,
+    Places,
+    Simple,
+    Slider,
+    Stepper,
+    TextField,
+    arranged,
+    parts_of,
+)
+from sandbox.draw.widgets_look import Attention, draw_control
+from sandbox.views.window_edit import Edit
+from sandbox.views.window_keys import Action
+from sandbox.views.window_parts import Silent
+from sandbox.views.window_press import Press, keyed, pressed
+
+if TYPE_CHECKING:
+    from sandbox.views.window import App
+
+Value = float | int | bool | str
+
+DOUBLE = 0.35  # two clicks within this are one double click [s]
+PAN = 8.0  # a press that moves this far scrolls, at scale 1 [px]
+FOOT_LINES = 3  # of help
+DRAWER = 0.92  # of the window's width, at most, for a panel that lies over the canvas
+
+
+class Section(Protocol):
+    """A part of the panel. Names of its controls begin with its own name and a slash."""
+
+    @property
+    def name(self) -> str:
+        """Tells it from all others."""
+
+    @property
+    def title(self) -> str:
+        """On its heading; empty: it has none and cannot be folded."""
+
+    def controls(self) -> Sequence[Control]:
+        """What there is at the moment; nothing: the section is not there."""
+
+    def use(self, name: str, value: Value, done: bool) -> None:
+        """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""
+
+
+@dataclass
+class Draft:
+    """A slider on its way: dragged, or moved by keys and not yet confirmed."""
+
+    name: str
+    value: float
+    by_mouse: bool
+
+
+class Panel(Silent):
+    """All sections, scrolled; what is hovered over, dragged and typed."""
+
+    def __init__(self, app: App, folded: set[str]) -> None:
+        self.app = app
+        self.sections: list[Section] = []
+        self.folded = folded  # names of sections
+        self.hidden = False
+        self.drawer = False  # opened over the canvas, where there is no room beside it
+        self.scroll = 0
+        self.draft: Draft | None = None
+        self.edit: Edit | None = None
+        self._places = Places((), 0)
+        self._hover = ""
+        self._press: Press | None = None
+        self._clicked = ("", 0.0)
+        self._pointer = (-1, -1)
+        self._followed = ""
+        self._picture: tuple[object, pygame.Surface] | None = None
+
+    # -- where it is --
+
+    @property
+    def rect(self) -> pygame.Rect:
+        """Its place in the window [px]; of no width when it is not shown."""
+        own = self.app.renderer.layout.panel
+        if self.hidden and not self.drawer:
+            return pygame.Rect(own.topleft, (0, 0))
+        if own.width or not self.drawer:
+            return own
+        width, height = self.app.renderer.size
+        wide = round(min(PANEL * self.app.renderer.scale, DRAWER * width))
+        bottom = self.app.renderer.layout.status.top
+        return pygame.Rect(width - wide, 0, wide, bottom or height)
+
+    @property
+    def shown(self) -> bool:
+        """Can it be seen?"""
+        return self.rect.width > 0 and self.rect.height > 0
+
+    def fold(self) -> None:
+        """Hide it or show it, over the canvas if there is no room beside it."""
+        if self.shown:
+            self.hidden, self.drawer = True, False
+        else:
+            self.hidden = False
+            self.app.arrange()
+            self.drawer = not self.app.renderer.layout.panel.width
+        self.app.arrange()
+        if not self.shown and not self.app.focus.on_canvas:
+            self.app.focus.leave()
+
+    def stops(self) -> Sequence[str]:
+        """What the keyboard can go to."""
+        return self._places.stops() if self.shown else ()
+
+    def place_of(self, name: str) -> pygame.Rect | None:
+        """Where a control is in the window, whether scrolled into view or not."""
+        place = self._places.named(name)
+        return None if place is None else place.rect.move(self.rect.left, -self.scroll)
+
+    @property
+    def _foot(self) -> int:
+        """Height of the help at the foot [px]; none in a low window."""
+        type_ = self.app.renderer.type
+        height = FOOT_LINES * type_.height(SMALL) + round(16 * type_.scale)
+        return height if self.rect.height > 4 * height else 0
+
+    @property
+    def _view(self) -> int:
+        """Height of what shows of the controls [px]."""
+        return self.rect.height - self._foot
+
+    # -- once a picture --
+
+    def tick(self, now: float) -> bool:
+        """Put the controls together anew; follow the keyboard."""
+        del now
+        if not self.shown:
+            self._places = Places((), 0)
+            return False
+        before = self._places
+        self._places = arranged(self._controls(), self.app.renderer.type, self.rect.width)
+        focus = self.app.focus
+        if self.draft is not None and not self.draft.by_mouse and focus.name != self.draft.name:
+            self._finish_draft()
+        if self.edit is not None and focus.name != self.edit.name:
+            self._finish_edit()
+        if focus.ring != self._followed:
+            self._followed = focus.ring
+            if focus.shown:
+                room = round(TARGET * self.app.renderer.scale)
+                self.scroll = self._places.scroll_to(focus.name, self.scroll, self._view, room)
+        self.scroll = max(0, min(self.scroll, self._places.height - self._view))
+        return self._places != before
+
+    def _controls(self) -> list[Control]:
+        controls: list[Control] = []
+        for section in self.sections:
+            own = section.controls()
+            if not own:
+                continue
+            if section.title:
+                is_open = section.name not in self.folded
+                controls.append(Heading(section.name, section.title, is_open))
+                own = own if is_open else ()
+            controls.extend(own)
+        if self.draft is not None:
+            draft = self.draft
+            controls = [
+                replace(control, value=draft.value)
+                if isinstance(control, Slider) and control.name == draft.name
+                else control
+                for control in controls
+            ]
+        return controls
+
+    # -- what a person does --
+
+    def act(self, action: Action) -> bool:
+        """The key that hides and shows it."""
+        if action is not Action.FOLD:
+            return False
+        self.fold()
+        return True
+
+    def handle(self, event: pygame.event.Event) -> bool:
+        """Mouse and keyboard."""
+        if event.type == pygame.KEYDOWN:
+            return self._key(event)
+        if event.type == pygame.MOUSEMOTION:
+            self._pointer = event.pos
+        if self.app.mouse.holding:  # the hand goes on over the panel
+            return False
+        inside = self.rect.collidepoint(self._pointer)
+        if event.type == pygame.MOUSEMOTION:
+            return self._motion(event.pos) or (inside and not any(event.buttons))
+        if event.type == pygame.MOUSEBUTTONDOWN:
+            self._pointer = event.pos
+            inside = self.rect.collidepoint(event.pos)
+            if inside and event.button == 1:
+                self._down(event.pos)
+            elif not inside:
+                self._finish_edit()
+                if self.drawer and event.button == 1:
+                    self.fold()
+            return inside
+        if event.type == pygame.MOUSEBUTTONUP and self._press is not None:
+            self._up(event.pos)
+            return True
+        if event.type == pygame.MOUSEWHEEL and inside:
+            self._scroll_by(-event.precise_y * 60.0 * self.app.renderer.scale)
+            return True
+        return False
+
+    def cursor(self) -> int | None:
+        """The system cursor over the panel."""
+        if not self.rect.collidepoint(self._pointer):
+            return None
+        return pygame.SYSTEM_CURSOR_HAND if self._hover else pygame.SYSTEM_CURSOR_ARROW
+
+    def _at(self, place: tuple[int, int]) -> Place | None:
+        """The control under the pointer, where it is unscrolled."""
+        rect = self.rect
+        if not rect.collidepoint(place) or place[1] >= rect.top + self._view:
+            return None
+        return self._places.at(*self._unscrolled(place))
+
+    def _unscrolled(self, place: tuple[int, int]) -> tuple[int, int]:
+        return place[0] - self.rect.left, place[1] - self.rect.top + self.scroll
+
+    def _scroll_by(self, pixels: float) -> None:
+        most = max(self._places.height - self._view, 0)
+        self.scroll = max(0, min(round(self.scroll + pixels), most))
+
+    def _down(self, pos: tuple[int, int]) -> None:
+        place = self._at(pos)
+        now = time.perf_counter()
+        name = place.control.name if place is not None else ""
+        if self.edit is not None and self.edit.name != name:
+            self._finish_edit()
+        self._finish_draft()
+        double = name == self._clicked[0] and now - self._clicked[1] < DOUBLE
+        self._clicked = (name, now)
+        self._press = Press(pos, self.scroll, place)
+        if place is None:
+            return
+        self.app.focus.go(name, False)
+        control = place.control
+        if not isinstance(control, Slider):
+            return
+        parts = parts_of(control, place.rect, self.app.renderer.type)
+        x, y = self._unscrolled(pos)
+        if double and not parts.box.collidepoint(x, y):
+            self._press = None
+            self._use(name, control.default, True)
+        elif parts.track.inflate(2 * round(PAD * self.app.renderer.scale), 0).collidepoint(x, y):
+            self._press.slides = True
+            self.draft = Draft(name, control.value, by_mouse=True)
+            self._slide(pos)
+
+    def _motion(self, pos: tuple[int, int]) -> bool:
+        press = self._press
+        if press is None:
+            place = self._at(pos)
+            hover = "" if place is None else place.control.name
+            changed, self._hover = hover != self._hover, hover
+            self.app.redraw(changed)
+            return False
+        if press.slides:
+            self._slide(pos)
+        elif press.pans or abs(pos[1] - press.start[1]) > PAN * self.app.renderer.scale:
+            press.pans = True
+            self.scroll = press.scroll
+            self._scroll_by(press.start[1] - pos[1])
+        return True
+
+    def _slide(self, pos: tuple[int, int]) -> None:
+        place = self._places.named(self.draft.name) if self.draft is not None else None
+        if self.draft is None or place is None or not isinstance(place.control, Slider):
+            return
+        track = parts_of(place.control, place.rect, self.app.renderer.type).track
+        share = (self._unscrolled(pos)[0] - track.left) / max(track.width, 1)
+        value = place.control.range.value(share)
+        if value != self.draft.value:
+            self.draft.value = value
+            self._use(self.draft.name, value, False)
+
+    def _up(self, pos: tuple[int, int]) -> None:
+        press, self._press = self._press, None
+        if press is None or press.pans:
+            return
+        if press.slides:
+            self._finish_draft()
+            return
+        place = self._at(pos)
+        if place is None or press.place is None:
+            return
+        if place.control.name == press.place.control.name:
+            self._activate(place, self._unscrolled(pos))
+
+    def _activate(self, place: Place, at: tuple[int, int]) -> None:
+        control = place.control
+        if isinstance(control, Heading):
+            self._toggle(control)
+            return
+        parts = parts_of(control, place.rect, self.app.renderer.type)
+        if isinstance(control, (Slider, Stepper, TextField)) and parts.box.collidepoint(at):
+            if self.edit is None:
+                self._begin_edit(control)
+            return
+        value = pressed(control, parts, at)
+        if value is not None:
+            self._use(control.name, value, True)
+
+    # -- keyboard --
+
+    def _key(self, event: pygame.event.Event) -> bool:
+        if self.edit is not None:
+            return self._key_of_edit(event)
+        place = self._places.named(self.app.focus.name) if self.shown else None
+        if place is None:
+            return False
+        control = place.control
+        if isinstance(control, Slider) and self.draft is not None:
+            control = replace(control, value=self.draft.value)
+        if event.key == pygame.K_ESCAPE and self.draft is not None:
+            self.draft = None
+            return True
+        if event.key in (pygame.K_RETURN, pygame.K_KP_ENTER) and self.draft is not None:
+            self._finish_draft()
+            return True
+        asked = keyed(control, event)
+        if asked is None:
+            return False
+        self.app.focus.go(control.name, True)
+        if isinstance(control, Heading):
+            if control.open != asked.value:
+                self._toggle(control)
+        elif asked.edits:
+            edit = self._begin_edit(control)
+            if asked.sign:
+                edit.key(event)
+        elif isinstance(control, Slider) and not asked.done:
+            self.draft = Draft(control.name, float(asked.value), by_mouse=False)
+            self._use(control.name, asked.value, False)
+        else:
+            self._use(control.name, asked.value, True)
+        return True
+
+    def _key_of_edit(self, event: pygame.event.Event) -> bool:
+        assert self.edit is not None
+        if event.key == pygame.K_ESCAPE:
+            self.edit = None
+        elif event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
+            self._finish_edit()
+        elif event.key == pygame.K_TAB:
+            self._finish_edit()
+            return False
+        else:
+            self.edit.key(event)
+        return True
+
+    def _begin_edit(self, control: Simple) -> Edit:
+        match control:
+            case Slider(value=value):
+                text = f"{value:.6g}"
+            case Stepper(value=value):
+                text = str(value)
+            case TextField(text=text):
+                pass
+            case _:
+                text = ""
+        edit = self.edit = Edit.of(control.name, text)
+        return edit
+
+    def _finish_edit(self) -> None:
+        """Hand over what was typed, if anything was."""
+        edit, self.edit = self.edit, None
+        if edit is not None and not edit.fresh:
+            self._use(edit.name, edit.text, True)
+
+    def _finish_draft(self) -> None:
+        draft, self.draft = self.draft, None
+        if draft is not None:
+            self._use(draft.name, draft.value, True)
+
+    def _toggle(self, heading: Heading) -> None:
+        self.folded ^= {heading.name}
+
+    def _use(self, name: str, value: Value, done: bool) -> None:
+        owner = name.partition("/")[0]
+        for section in self.sections:
+            if section.name == owner:
+                section.use(name, value, done)
+        self.app.redraw(True)
+
+    # -- drawing --
+
+    def draw(self, painter: Painter) -> None:
+        """All that is in view, from a picture that is kept as long as nothing has changed."""
+        rect = self.rect
+        if not self.shown:
+            return
+        focus = self.app.focus
+        edit = self.edit
+        attention = Attention(
+            focus.ring,
+            self._hover,
+            "" if edit is None else edit.name,
+            "" if edit is None else edit.text,
+            0 if edit is None else edit.caret,
+        )
+        key = (self._places, attention, self.scroll, rect.size, painter.theme, painter.type.scale)
+        if self._picture is None or self._picture[0] != key:
+            self._picture = (key, self._drawn(painter, attention))
+        painter.picture(self._picture[1], rect.topleft)
+
+    def _drawn(self, painter: Painter, attention: Attention) -> pygame.Surface:
+        theme, type_, rect = painter.theme, painter.type, self.rect
+        whole = pygame.Surface(rect.size, 0, 32)
+        whole.fill(channels(theme.panel))
+        view = pygame.Surface((rect.width, max(self._view, 1)), 0, 32)
+        view.fill(channels(theme.panel))
+        inside = Painter(view, theme, type_)
+        for place in self._places.all:
+            moved = place.rect.move(0, -self.scroll)
+            if moved.bottom > 0 and moved.top < self._view:
+                draw_control(inside, Place(place.control, moved), attention)
+        self._draw_scroll_bar(inside)
+        inside.flush()
+        whole.blit(view, (0, 0))
+        around = Painter(whole, theme, type_)
+        thin = max(round(type_.scale), 1)
+        around.fill(pygame.Rect(0, 0, thin, rect.height), theme.hairline)
+        if self._foot:
+            self._draw_foot(around, pygame.Rect(0, self._view, rect.width, self._foot), attention)
+        around.flush()
+        return whole
+
+    def _draw_scroll_bar(self, painter: Painter) -> None:
+        if self._places.height <= self._view:
+            return
+        width = max(round(4 * painter.scale), 3)
+        length = max(self._view * self._view // self._places.height, 3 * width)
+        travel = self._view - length
+        top = travel * self.scroll // (self._places.height - self._view)
+        bar = pygame.Rect(self.rect.width - width - 2, top, width, length)
+        painter.box(bar, painter.theme.soft_text, radius=0.5 * width)
+
+    def _draw_foot(self, painter: Painter, rect: pygame.Rect, attention: Attention) -> None:
+        """What the control under the mouse or the keyboard is about."""
+        type_, pad = painter.type, round(PAD * painter.scale)
+        thin = max(round(painter.scale), 1)
+        painter.fill(pygame.Rect(rect.left, rect.top, rect.width, thin), painter.theme.hairline)
+        place = self._places.named(attention.hover or attention.focus)
+        if place is None:
+            return
+        lines = type_.wrapped(place.control.help, SMALL, rect.width - 2 * pad)
+        if len(lines) > FOOT_LINES:
+            rest = lines[FOOT_LINES - 1] + " …"
+            lines = [
+                *lines[: FOOT_LINES - 1],
+                type_.shortened(rest, SMALL, rect.width - 2 * pad),
+            ]
+        for index, line in enumerate(lines):
+            y = rect.top + pad // 2 + round((index + 0.5) * type_.height(SMALL))
+            painter.text(line, rect.left + pad, y, size=SMALL)
