@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,9 +33,16 @@ class Part:
 
 
 def draw_header(
-    painter: Painter, rect: pygame.Rect, frame: Frame, look: Look, chain_top: float | None
+    painter: Painter,
+    rect: pygame.Rect,
+    frames: Sequence[Frame],
+    look: Look,
+    chain_top: float | None,
 ) -> None:
-    """Title at the left; at the right the kinds of grains, the force scale and that of the view."""
+    """Title at the left; at the right the kinds of grains, the force scale and that of the view.
+
+    Side by side all frames have the same scales: one header serves them all.
+    """
     if rect.height <= 0:
         return
     scale, theme, type_ = painter.scale, painter.theme, painter.type
@@ -44,10 +51,10 @@ def draw_header(
     painter.fill(pygame.Rect(rect.left, rect.bottom - thin, rect.width, thin), theme.hairline)
     pad, gap = round(14 * scale), round(26 * scale)
     left, right = rect.left + pad, rect.right - pad
-    name = words.title(frame.scene, frame.title)
+    name = words.title(frames[0].scene, frames[0].title)
     title = type_.width(name, HEADING, bold=True)
 
-    choices, enough = _choices(painter, frame, look, chain_top)
+    choices, enough = _choices(painter, frames, look, chain_top)
     widths = [sum(part.width + gap for part in parts) for parts in choices]
     room = right - left
     fitting = [k for k, width in enumerate(widths[:-1]) if title + width <= room]
@@ -64,11 +71,11 @@ def draw_header(
 
 
 def _choices(
-    painter: Painter, frame: Frame, look: Look, chain_top: float | None
+    painter: Painter, frames: Sequence[Frame], look: Look, chain_top: float | None
 ) -> tuple[list[list[Part]], int]:
     """What to show from left to right, best first; those from the index on say just enough."""
     long, short = (
-        _kinds(painter, frame, look, names) for names in (words.KINDS, words.KINDS_SHORT)
+        _kinds(painter, frames, look, names) for names in (words.KINDS, words.KINDS_SHORT)
     )
     name = _name(painter, words.VIEW.format(view=look.view.title))
     chains = [] if chain_top is None else [_chains(painter, look, chain_top, BAR)]
@@ -91,10 +98,13 @@ def _name(painter: Painter, text: str) -> Part:
     return Part(painter.type.width(text, SMALL), draw)
 
 
-def _kinds(painter: Painter, frame: Frame, look: Look, names: Mapping[str, str]) -> list[Part]:
+def _kinds(
+    painter: Painter, frames: Sequence[Frame], look: Look, names: Mapping[str, str]
+) -> list[Part]:
     """Grains as on the canvas, each with its name."""
-    auxetic = int(np.count_nonzero(frame.auxetic))
-    kinds = [("regular", frame.grains - auxetic), ("auxetic", auxetic)]
+    auxetic = sum(int(np.count_nonzero(frame.auxetic)) for frame in frames)
+    grains = sum(frame.grains for frame in frames)
+    kinds = [("regular", grains - auxetic), ("auxetic", auxetic)]
     return [_kind(painter, look, kind, names[kind]) for kind, count in kinds if count]
 
 

@@ -98,8 +98,12 @@ def draw_handles(
     frame: Frame,
     hand: Hand,
     force_top: float,
+    free: pygame.Rect | None = None,
 ) -> None:
-    """Lines to the hand's targets, knobs, and force arrows with their numbers."""
+    """Lines to the hand's targets, knobs, and force arrows with their numbers.
+
+    ``free``: the part of the canvas in which numbers may stand.
+    """
     for handle in frame.handles:
         here = camera.to_screen(handle.x, handle.y)
         if not (math.isfinite(here[0]) and math.isfinite(here[1])):
@@ -112,7 +116,7 @@ def draw_handles(
         lively = active or hand.hover == handle.name
         _draw_knob(painter, rect, here, handle, lively=lively)
     for handle in frame.handles:
-        _draw_force(painter, rect, camera, handle, force_top)
+        _draw_force(painter, rect, camera, handle, force_top, rect if free is None else free)
 
 
 def _draw_taut_line(
@@ -169,7 +173,12 @@ def _triangle(
 
 
 def _draw_force(
-    painter: Painter, rect: pygame.Rect, camera: Camera, handle: HandleState, top: float
+    painter: Painter,
+    rect: pygame.Rect,
+    camera: Camera,
+    handle: HandleState,
+    top: float,
+    free: pygame.Rect,
 ) -> None:
     """An arrow from the handle along the force of the hand, and the force as a number."""
     size = math.hypot(handle.fx, handle.fy)
@@ -204,13 +213,13 @@ def _draw_force(
     plate = pygame.Rect(0, 0, width, height)
     away = 0.5 * (width * abs(way[0]) + height * abs(way[1])) + 5.0 * scale
     plate.center = (round(tip[0] + away * way[0]), round(tip[1] + away * way[1]))
-    plate.clamp_ip(rect)
+    plate.clamp_ip(free)
     reach = KNOB * scale * 1.4
     if plate.inflate(2.0 * reach, 2.0 * reach).collidepoint(x, y):  # no room beside the knob
-        if y - rect.top > rect.bottom - y:
-            plate.top = rect.top
+        if y - free.top > free.bottom - y:
+            plate.top = free.top
         else:
-            plate.bottom = rect.bottom
+            plate.bottom = free.bottom
     painter.box(
         plate,
         painter.theme.panel,

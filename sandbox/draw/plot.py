@@ -1,4 +1,4 @@
-"""The strip under the canvas: force against stroke, the current point marked."""
+"""The strip under the canvases: force against stroke, one curve a packing, earlier ones faint behind them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,16 @@ from numpy.typing import NDArray
 from sandbox.draw import words
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
+from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
 from sandbox.draw.text import BODY, SMALL
+from sandbox.draw.theme import mix
+from sandbox.history import Event
 
 Floats = NDArray[np.float64]
 
-
 LEAST_FORCE = 0.01  # the axis goes at least this far: it makes no show of rounding noise [k R]
+WIDTH, FAINT_WIDTH = 2.2, 1.3  # of curves at scale 1 [px]
+FAINT = 0.5  # how far earlier curves recede into the panel
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,7 +31,10 @@ class Curve:
     stroke: Floats  # (M,) [R]
     force: Floats  # (M,) [k R]
     colour: int
-    dash: tuple[float, ...] = ()  # lengths on, off [px]
+    dash: tuple[float, ...] = ()  # lengths on, off at scale 1 [px]
+    name: str = ""  # in the present language
+    faint: bool = False  # of an earlier run
+    events: tuple[Event, ...] = ()
 
 
 def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -96,9 +103,9 @@ def draw_plot(
     label: str,
     stroke_label: str = "",
 ) -> None:
-    """Axes, curves, the last point of the first curve with its number.
+    """Axes and curves. One alone has its present value in the headline; several are named at their ends.
 
-    Labels are in the present language already.
+    Labels are in the present language already. The present curves come first, earlier ones after them.
     """
     if rect.height <= 0 or rect.width <= 0:
         return
@@ -115,16 +122,18 @@ def draw_plot(
     force_digits = decimals_for(force_ticks[1] - force_ticks[0] if len(force_ticks) > 1 else 1.0)
     names = [number(value, force_digits) for value in force_ticks]
     gutter = max((type_.width(name, SMALL) for name in names), default=0) + 2 * pad
-
-    # The headline: what is plotted at the left, its present value at the right.
-    current = ""
-    if parts and parts[0][0].size:
-        digits = decimals_for(axes[3] - axes[2]) + 2
-        current = f"{number(float(parts[0][1][-1]), digits)} {unit_of(label)}".rstrip()
+    digits = decimals_for(axes[3] - axes[2]) + 2
     line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
     right = rect.right - 2 * pad
-    shown = painter.text(current, right, line, size=BODY, bold=True, anchor="right")
-    room = (shown.left if current else right) - rect.left - gutter - 2 * pad
+
+    # The headline: what is plotted at the left; its present value, or what marks mean, at the right.
+    if len(curves) == 1:
+        left = _draw_value(painter, (right, line), parts[0][1], digits, unit_of(label))
+    else:
+        kinds = [event.kind for curve in curves if not curve.faint for event in curve.events]
+        room = 0.5 * (right - rect.left) - gutter
+        left = draw_event_key(painter, right, line, kinds, room)
+    room = left - rect.left - gutter - 2 * pad
     painter.text(
         type_.shortened(label, SMALL, room),
         rect.left + gutter,
@@ -136,26 +145,74 @@ def draw_plot(
     top = line + type_.height(BODY) // 2 + round(6 * scale)
     # Numbers of the stroke stand half a line below the axis, clear of the force axis' lowest.
     bottom = rect.bottom - text - text // 2 - round(4 * scale)
+    named = [(curve, part) for curve, part in zip(curves, parts, strict=True) if part[0].size] * (
+        len(curves) > 1
+    )
+    labels = [_label(curve, part[1], digits) for curve, part in named]
+    column = names_width(painter, labels, 0.36 * rect.width)
     box = PlotBox(
-        pygame.Rect(rect.left + gutter, top, right - rect.left - gutter, bottom - top), axes
+        pygame.Rect(rect.left + gutter, top, right - rect.left - gutter - column, bottom - top),
+        axes,
     )
     if box.rect.width < 10 or box.rect.height < 10:
         return
     _draw_axes(painter, box, force_ticks, names, stroke_label or words.STROKE_AXIS)
-    if not current:
+    if not any(stroke.size for stroke, _ in parts):
         painter.text(
             words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
         )
         return
     inside = box.rect.inflate(round(12 * scale), round(12 * scale))
-    for curve, (stroke, force) in reversed(list(zip(curves, parts, strict=True))):
-        x, y = thinned(box.x(stroke), box.y(force))
-        dash = [length * scale for length in curve.dash]
-        painter.polyline(x, y, 2.0 * scale, curve.colour, inside, dash)
-    stroke, force = parts[0]
-    last = float(box.x(stroke[-1])), float(box.y(force[-1]))
-    painter.disc(*last, 6.5 * scale, theme.panel, clip=inside)
-    painter.disc(*last, 4.5 * scale, curves[0].colour, clip=inside)
+    for curve, part in reversed(list(zip(curves, parts, strict=True))):
+        _draw_curve(painter, box, inside, curve, part)
+    for curve, part in reversed(list(zip(curves, parts, strict=True))):
+        if not curve.faint and part[0].size:
+            last = float(box.x(part[0][-1])), float(box.y(part[1][-1]))
+            painter.disc(*last, 6.5 * scale, theme.panel, clip=inside)
+            painter.disc(*last, 4.5 * scale, curve.colour, clip=inside)
+    ends = [
+        (float(box.x(part[0][-1])), float(box.y(part[1][-1])), _colour(painter, curve), curve.dash)
+        for curve, part in named
+    ]
+    draw_names(painter, box.rect, right, labels, ends)
+
+
+def _draw_value(
+    painter: Painter, place: tuple[float, float], force: Floats, digits: int, unit: str
+) -> float:
+    """The latest force; returns where it begins [px]."""
+    if not force.size:
+        return place[0]
+    text = f"{number(float(force[-1]), digits)} {unit}".rstrip()
+    return painter.text(text, *place, size=BODY, bold=True, anchor="right").left
+
+
+def _label(curve: Curve, force: Floats, digits: int) -> tuple[str, bool]:
+    """What stands at a curve's end, and whether it is an earlier one."""
+    if curve.faint:
+        return curve.name, True
+    return f"{curve.name} {number(float(force[-1]), digits)}", False
+
+
+def _colour(painter: Painter, curve: Curve) -> int:
+    return mix(curve.colour, painter.theme.panel, FAINT) if curve.faint else curve.colour
+
+
+def _draw_curve(
+    painter: Painter,
+    box: PlotBox,
+    inside: pygame.Rect,
+    curve: Curve,
+    part: tuple[Floats, Floats],
+) -> None:
+    scale = painter.scale
+    x, y = thinned(box.x(part[0]), box.y(part[1]))
+    dash = [length * scale for length in curve.dash]
+    width = (FAINT_WIDTH if curve.faint else WIDTH) * scale
+    painter.polyline(x, y, width, _colour(painter, curve), inside, dash)
+    if not curve.faint:
+        at = [(float(box.x(e.stroke)), float(box.y(e.force)), e.kind) for e in curve.events]
+        draw_events(painter, inside, at)
 
 
 def _draw_axes(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,18 +11,28 @@ import pygame
 import pygame.surfarray
 from numpy.typing import NDArray
 
+from sandbox.curves import Kept
 from sandbox.draw import words
 from sandbox.draw.camera import Camera
+from sandbox.draw.flashes import Flash, draw_flash
 from sandbox.draw.layout import Layout, layout
 from sandbox.draw.legend import draw_header
 from sandbox.draw.numbers import RoundScale, typical_largest
 from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
+from sandbox.draw.pane import (
+    above,
+    draw_plates,
+    draw_strip,
+    place_plates,
+    said_of,
+    strip_of,
+)
 from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Curve, draw_plot
 from sandbox.draw.status import draw_status
-from sandbox.draw.text import BODY, Type
-from sandbox.draw.theme import channels, packing_colour, theme_named
+from sandbox.draw.text import Type
+from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
 from sandbox.draw.views import VIEWS, view_named
 from sandbox.draw.world import Look, draw_bodies, draw_grains
 from sandbox.frame import Frame
@@ -54,8 +65,15 @@ class Renderer:
         self.surface = pygame.Surface(size, 0, 32)
         self._wanted: dict[str, Any] = {}  # of the layout: panes, panel, timeline
         self.layout: Layout = layout(size, scale)
-        self.camera = Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0)
+        self.cameras: tuple[Camera, ...] = (
+            Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0),
+        )
         self.forget()
+
+    @property
+    def camera(self) -> Camera:
+        """That of the first canvas."""
+        return self.cameras[0]
 
     @property
     def size(self) -> tuple[int, int]:
@@ -105,82 +123,124 @@ class Renderer:
 
     def draw(
         self,
-        frame: Frame,
+        frames: Frame | Sequence[Frame | None],
         *,
         hand: Hand | None = None,
         rate: str = "",
         paused: bool = False,
-        notices: tuple[str, ...] = (),
+        notices: Sequence[str] = (),
+        told: Sequence[Sequence[str]] = (),
+        kept: Sequence[Curve] = (),
+        flashes: Sequence[Flash] = (),
     ) -> pygame.Surface:
-        """Draw a frame; returns the renderer's surface, which the next call overwrites.
+        """Draw a frame, or several side by side; returns the renderer's surface, which the next call overwrites.
 
-        ``rate`` is what the status line says about frames a second; ``notices`` are the window's
-        own, shown with the frame's.
+        A frame that is not there yet leaves its canvas empty; at least one must be there. ``rate`` is what the status
+        line says about frames a second; ``notices`` are the window's own, and ``told`` those of each pane, shown with
+        the frame's. ``kept`` are curves of earlier runs, drawn behind those of the frames.
         """
+        panes = [frames] if isinstance(frames, Frame) else list(frames)
+        if len(panes) != len(self.layout.canvases):
+            self.arrange(**{**self._wanted, "panes": len(panes)})
+        shown = [frame for frame in panes if frame is not None]
         painter = self.painter()
-        places = self.layout
-        self.camera = Camera.fit(frame.bounds, places.canvas, MARGIN * self.scale)
-        painter.fill(places.canvas, self.theme.ground)
-        look = self._look(frame)
-        draw_grains(painter, places.canvas, self.camera, frame, look)
-        draw_bodies(painter, places.canvas, self.camera, frame)
-        chain_top = None
-        if look.chains:
-            chain_top = self._chain_scale.follow(typical_largest(frame.contacts.force))
-            plain = look.values is not None
-            draw_chains(painter, places.canvas, self.camera, frame, chain_top, plain)
-        draw_cell(painter, places.canvas, self.camera, frame)
-        forces = [math.hypot(handle.fx, handle.fy) for handle in frame.handles]
+        bodies = self._canvases(painter, panes)
+        bounds = [(frame or shown[0]).bounds for frame in panes]
+        views = list(zip(bounds, bodies, strict=True))
+        self.cameras = Camera.fit_all(views, MARGIN * self.scale)
+        looks, chain_top = self._looks(shown)
+        forces = [math.hypot(handle.fx, handle.fy) for frame in shown for handle in frame.handles]
         hand_top = self._hand_scale.follow(max(forces, default=0.0))
-        draw_handles(painter, places.canvas, self.camera, frame, hand or Hand(), hand_top)
-        draw_header(painter, places.header, frame, look, chain_top)
-        curve = Curve(frame.curve_stroke, frame.curve_force, packing_colour(frame.packing))
-        labels = words.say(frame.curve_label), words.say(frame.stroke_label)
-        draw_plot(painter, places.plot, [curve], *labels)
-        draw_status(painter, places.status, frame, rate=rate, paused=paused)
-        self._draw_notices(painter, (*map(words.say, frame.notices), *notices))
+        foot = bodies[0].unionall(bodies[1:])  # the window's own words stand under all packings
+        plates = place_plates(self.type, foot, notices, foot.bottom - 10 * self.scale)
+        bottom = plates[-1].rect.top - 6 * self.scale if plates else foot.bottom - 10 * self.scale
+        waiting = iter(looks)
+        for pane, frame in enumerate(panes):
+            rect, camera = bodies[pane], self.cameras[pane]
+            said = () if frame is None else said_of(frame)
+            said = (*said, *(told[pane] if pane < len(told) else ()))
+            own = place_plates(self.type, rect, said, bottom)
+            if frame is not None:
+                self._draw_scene(painter, rect, camera, frame, next(waiting), chain_top)
+                for flash in flashes:
+                    if flash.pane == pane:
+                        draw_flash(painter, rect, camera, frame, flash)
+                free = above(rect, [*plates, *own], 0.4 * rect.height)
+                draw_handles(painter, rect, camera, frame, hand or Hand(), hand_top, free)
+            draw_plates(painter, own)
+        draw_plates(painter, plates)
+        draw_header(painter, self.layout.header, shown, looks[0], chain_top)
+        labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
+        draw_plot(painter, self.layout.plot, [*map(curve_of, shown), *kept], *labels)
+        painter.fill(self.layout.timeline, self.theme.panel)
+        painter.fill(self.layout.panel, self.theme.panel)
+        draw_status(painter, self.layout.status, shown, rate=rate, paused=paused)
         painter.flush()
         return self.surface
 
-    def _look(self, frame: Frame) -> Look:
-        """What the view makes of a frame."""
+    def _canvases(self, painter: Painter, panes: Sequence[Frame | None]) -> list[pygame.Rect]:
+        """Clear the canvases, title them if there are several; returns what is left for the grains."""
+        canvases = self.layout.canvases
+        if len(canvases) == 1:
+            painter.fill(canvases[0], self.theme.ground)
+            return [canvases[0]]
+        painter.fill(canvases[0].unionall(canvases[1:]), self.theme.hairline)  # shows in the seams
+        bodies = []
+        for canvas, frame in zip(canvases, panes, strict=True):
+            strip, body = strip_of(canvas, self.scale)
+            painter.fill(canvas, self.theme.ground)
+            if frame is not None:
+                draw_strip(painter, strip, frame)
+            bodies.append(body)
+        return bodies
+
+    def _draw_scene(
+        self,
+        painter: Painter,
+        rect: pygame.Rect,
+        camera: Camera,
+        frame: Frame,
+        look: Look,
+        chain_top: float | None,
+    ) -> None:
+        """Grains, bodies, chains."""
+        draw_grains(painter, rect, camera, frame, look)
+        draw_bodies(painter, rect, camera, frame)
+        if chain_top is not None:
+            draw_chains(painter, rect, camera, frame, chain_top, look.values is not None)
+        draw_cell(painter, rect, camera, frame)
+
+    def _looks(self, frames: Sequence[Frame]) -> tuple[list[Look], float | None]:
+        """What the view makes of the frames, on one scale for all; and the top of the chains' scale, if there are any."""
         view = self.view
         chains = self.chains or view.only_chains
+        chain_top = None
+        if chains:
+            strongest = max(typical_largest(frame.contacts.force) for frame in frames)
+            chain_top = self._chain_scale.follow(strongest)
         if view.measure is None:
-            return Look(view, chains)
-        values = view.measure(frame)
-        return Look(
-            view, chains, values, self._view_scales[view.name].follow(typical_largest(values))
-        )
+            return [Look(view, chains)] * len(frames), chain_top
+        values = [view.measure(frame) for frame in frames]
+        top = self._view_scales[view.name].follow(max(map(typical_largest, values)))
+        return [Look(view, chains, each, top) for each in values], chain_top
 
-    def _draw_notices(self, painter: Painter, notices: tuple[str, ...]) -> None:
-        """Plain words on plates at the foot of the canvas, the newest lowest."""
-        scale, canvas = self.scale, self.layout.canvas
-        bottom = canvas.bottom - round(10 * scale)
-        for notice in reversed(notices):
-            room = canvas.width - round(56 * scale)
-            text = self.type.shortened(notice, BODY, room)
-            plate = pygame.Rect(
-                0,
-                0,
-                self.type.width(text, BODY) + round(32 * scale),
-                self.type.height(BODY) + round(12 * scale),
-            )
-            plate.midbottom = (canvas.centerx, bottom)
-            if not text or plate.top < canvas.top:
-                return
-            painter.box(
-                plate,
-                self.theme.panel,
-                radius=0.5 * plate.height,
-                edge=self.theme.hairline,
-                edge_width=1.5 * scale,
-                alpha=0.94,
-            )
-            painter.text(text, *plate.center, anchor="centre")
-            bottom = plate.top - round(6 * scale)
-
-    def image(self, frame: Frame) -> NDArray[np.uint8]:
-        """A frame as an array for films, uint8 (height, width, 3)."""
-        pixels = pygame.surfarray.pixels3d(self.draw(frame))
+    def image(
+        self, frames: Frame | Sequence[Frame | None], *, flashes: Sequence[Flash] = ()
+    ) -> NDArray[np.uint8]:
+        """A frame, or several side by side, as an array for films, uint8 (height, width, 3)."""
+        pixels = pygame.surfarray.pixels3d(self.draw(frames, flashes=flashes))
         return np.ascontiguousarray(pixels.transpose(1, 0, 2))
+
+
+def curve_of(frame: Frame) -> Curve:
+    """A frame's own curve."""
+    packing = frame.packing
+    name = words.PACKINGS.get(packing, packing)
+    colour, dash = packing_colour(packing), packing_dash(packing)
+    return Curve(frame.curve_stroke, frame.curve_force, colour, dash, name, events=frame.events)
+
+
+def kept_curve(kept: Kept) -> Curve:
+    """The curve of an earlier run."""
+    colour, dash = packing_colour(kept.packing), packing_dash(kept.packing)
+    return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import pygame
@@ -22,30 +23,64 @@ class Lamp:
     colour: int
     state: str
     error: str  # how far the forces can be trusted; empty where that means nothing
+    within: str = ""  # the same in the fewest words
 
     @property
     def words(self) -> str:
         """Both parts."""
         return f"{self.state} · {self.error}" if self.error else self.state
 
+    @property
+    def short(self) -> str:
+        """Both parts where there is little room."""
+        return f"{self.state} · {self.within}" if self.within else self.state
+
 
 def lamp(frame: Frame, theme: Theme) -> Lamp:
     """Green: settled to the tolerance; amber: on the way; red: don't believe the picture."""
     if frame.stop_reason in words.BROKEN:
         return Lamp(theme.bad, words.STOPPED[frame.stop_reason], "")
+    within = ""
     if not math.isfinite(frame.residual):
         error = words.NO_FORCES
     elif frame.residual > 1.0:
         error = words.UNKNOWN_FORCES
     else:
-        error = words.FORCE_ERROR.format(error=percent(max(frame.residual, 1e-6)))
+        bound = percent(max(frame.residual, 1e-6))
+        error, within = words.FORCE_ERROR.format(error=bound), words.WITHIN.format(error=bound)
     if frame.busy:
-        return Lamp(theme.working, words.SETTLING, error)
+        return Lamp(theme.working, words.SETTLING, error, within)
     if frame.stop_reason == CONVERGED:
-        return Lamp(theme.good, words.SETTLED, error)
+        return Lamp(theme.good, words.SETTLED, error, within)
     reason = words.STOPPED.get(frame.stop_reason, frame.stop_reason)
     near = frame.residual <= 10.0 * frame.tolerance
-    return Lamp(theme.working if near else theme.bad, reason, error)
+    return Lamp(theme.working if near else theme.bad, reason, error, within)
+
+
+def worst(frames: Sequence[Frame], theme: Theme) -> Frame:
+    """The frame that is to be believed least."""
+    order = [theme.good, theme.working, theme.bad]
+
+    def doubt(frame: Frame) -> tuple[int, float]:
+        residual = frame.residual if math.isfinite(frame.residual) else 0.0
+        return order.index(lamp(frame, theme).colour), residual
+
+    return max(frames, key=doubt)
+
+
+LAMP = 7.0  # radius at scale 1 [px]
+
+
+def lamp_space(painter: Painter) -> int:
+    """Width of a lamp and the gap after it [px]."""
+    return round(2 * LAMP * painter.scale + 8 * painter.scale)
+
+
+def draw_lamp(painter: Painter, x: float, y: float, colour: int) -> None:
+    """A lamp with its left end and its middle height there."""
+    radius = LAMP * painter.scale
+    edge = mix(colour, 0x000000, 0.3)
+    painter.disc(x + radius, y, radius, colour, edge=edge, edge_width=1.5 * painter.scale)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,40 +97,26 @@ def _width(painter: Painter, item: _Item) -> int:
 
 
 def draw_status(
-    painter: Painter, rect: pygame.Rect, frame: Frame, *, rate: str, paused: bool
+    painter: Painter, rect: pygame.Rect, frames: Sequence[Frame], *, rate: str, paused: bool
 ) -> None:
-    """Scene · packing · seed · increment, the lamp with its words, frames a second."""
+    """Scene · packing · seed · increment, the lamp with its words, frames a second.
+
+    Side by side the lamp is that of the packing to be believed least.
+    """
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     painter.fill(rect, theme.panel)
     painter.fill(pygame.Rect(rect.left, rect.top, rect.width, max(round(scale), 1)), theme.hairline)
     pad, gap = round(14 * scale), round(22 * scale)
     middle = rect.centery
+    frame = worst(frames, theme)
     state = lamp(frame, theme)
-    lamp_radius = 7.0 * scale
-    lamp_space = round(2 * lamp_radius + 8 * scale)
+    said = state.words
+    if len(frames) > 1 and state.colour != theme.good:
+        said = f"{words.PACKINGS.get(frame.packing, frame.packing)}: {said}"
 
-    items = [
-        _Item(words.title(frame.scene, frame.scene.replace("_", " ")), 2),
-        _Item(words.PACKINGS.get(frame.packing, frame.packing), 4),
-        _Item(words.SEED.format(seed=frame.seed), 1),
-        _Item(
-            words.INCREMENT.format(increment=frame.increment),
-            3,
-            words.INCREMENT.format(increment="000"),
-        ),
-    ]
-    if frame.grains_out:
-        items.append(_Item(
-                words.GRAINS_OUT.format(count=frame.grains_out),
-                5,
-                words.GRAINS_OUT.format(count="000"),
-            ))
-    if frame.protocol:
-        items.append(_Item(words.DRIVE, 2))
-    if paused:
-        items.append(_Item(words.PAUSED, 6))
+    items = _items(frames, paused)
     room = rect.width - 2 * pad
-    wanted = lamp_space + type_.width(state.words, BODY)
+    wanted = lamp_space(painter) + type_.width(said, BODY)
     rate_width = type_.width(rate, BODY) + gap if rate else 0
     while items and sum(_width(painter, item) + gap for item in items) + wanted + rate_width > room:
         if rate_width:
@@ -103,24 +124,42 @@ def draw_status(
             continue
         items.remove(min(items, key=lambda item: item.rank))
 
-    x = rect.left + pad
+    x = float(rect.left + pad)
     for index, item in enumerate(items):
         painter.text(item.text, x, middle, colour=theme.soft_text)
         x += _width(painter, item) + gap
         dot = x - gap // 2
         if index + 1 < len(items):
             painter.disc(dot, middle + scale, 1.6 * scale, theme.soft_text)
-    painter.disc(
-        x + lamp_radius,
-        middle,
-        lamp_radius,
-        state.colour,
-        edge=mix(state.colour, 0x000000, 0.3),
-        edge_width=1.5 * scale,
-    )
-    x += lamp_space
+    draw_lamp(painter, x, middle, state.colour)
+    x += lamp_space(painter)
     free = rect.right - pad - x - rate_width
-    whole = type_.width(state.words, BODY) <= free
-    painter.text(state.words if whole else type_.shortened(state.state, BODY, free), x, middle)
+    whole = type_.width(said, BODY) <= free
+    painter.text(said if whole else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
         painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
+
+
+def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
+    """What stands before the lamp."""
+    frame, several = frames[0], len(frames) > 1
+    packing = words.PACKINGS.get(frame.packing, frame.packing)
+    if several:
+        packing = words.SIDE_BY_SIDE.format(count=len(frames))
+    increment = max(frame.increment for frame in frames)
+    items = [
+        _Item(words.title(frame.scene, frame.scene.replace("_", " ")), 2),
+        _Item(packing, 4),
+        _Item(words.SEED.format(seed=frame.seed), 1),
+        _Item(
+            words.INCREMENT.format(increment=increment), 3, words.INCREMENT.format(increment="000")
+        ),
+    ]
+    if frame.grains_out and not several:
+        out = words.GRAINS_OUT
+        items.append(_Item(out.format(count=frame.grains_out), 5, out.format(count="000")))
+    if any(frame.protocol for frame in frames):
+        items.append(_Item(words.DRIVE, 2))
+    if paused:
+        items.append(_Item(words.PAUSED, 6))
+    return items

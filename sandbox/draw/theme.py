@@ -135,6 +135,11 @@ def packing_colour(packing: str) -> int:
     return {"regular": REGULAR, "auxetic": AUXETIC}.get(packing, MIXED)
 
 
+def packing_dash(packing: str) -> tuple[float, ...]:
+    """The dash of a packing's curve, lengths on and off at scale 1 [px]: never colour alone."""
+    return {"regular": (), "auxetic": (11.0, 5.0)}.get(packing, (4.0, 4.0))
+
+
 def _cividis_table() -> Colours:
     places = [place for place, _ in _CIVIDIS]
     table = np.zeros(256, dtype=np.uint32)

@@ -79,7 +79,7 @@ class Conductor:
     def submit(self, command: Command) -> None:
         """Send a command to all. Of those that only the latest of counts, only the latest is kept."""
         with self._changed:
-            if self._mail and _replaces(command, self._mail[-1]):
+            if self._mail and self._replaces(command, self._mail[-1]):
                 self._mail[-1] = command
             else:
                 self._mail.append(command)
@@ -154,7 +154,7 @@ class Conductor:
 
     def _begin(self) -> float:
         """Begin a turn, if one is due: 0. Otherwise how long to wait at least [s]."""
-        if not all(member.waiting for member in self._members):
+        if not all(member.waiting or member.stopping for member in self._members):
             return math.inf
         if self._advanced:
             self._steps = max(self._steps - 1, 0)
@@ -187,11 +187,10 @@ class Conductor:
                 break
         self._past.append(commands)
 
-
-def _replaces(new: Command, old: Command) -> bool:
-    """Does only the newer of two commands count, when nothing comes between them?"""
-    if isinstance(new, Move) and isinstance(old, Move):
-        return new.handle == old.handle
-    if isinstance(new, Change) and isinstance(old, Change):
-        return new.name == old.name
-    return isinstance(new, Recall) and isinstance(old, Recall)
+    def _replaces(self, new: Command, old: Command) -> bool:
+        """Does only the newer of two commands count, when nothing comes between them?"""
+        if isinstance(new, Move) and isinstance(old, Move):
+            return new.handle == old.handle
+        if isinstance(new, Change) and isinstance(old, Change):
+            return new.name == old.name and not self._begins_anew(new)
+        return isinstance(new, Recall) and isinstance(old, Recall)

@@ -20,6 +20,7 @@ from core.errors import InputError
 from sandbox.commands import Command
 from sandbox.frame import Frame
 from sandbox.views.conductor import Conductor, Turn
+from scenes.text import message
 
 log = logging.getLogger(__name__)
 
@@ -143,7 +144,7 @@ class SolverThread:
             now = self._snapshot
             self._snapshot = replace(now, phase="stopped", serial=now.serial + 1)
         except InputError as error:
-            self._fail(str(error))
+            self._fail(message(error))
         except Exception as error:
             log.exception("the solver stopped")
             self._fail(f"{type(error).__name__}: {error}" if str(error) else type(error).__name__)

@@ -1,121 +1,328 @@
-"""The run that the window shows: which session, its thread, and what may be asked of it."""
+"""The runs that the window shows: one packing or several side by side, their threads, and what may be asked of them."""
 
 from __future__ import annotations
 
+import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 from core.errors import InputError
-from sandbox.commands import Change, Command, Protocol, Reset
+from sandbox.commands import Change, Command, Protocol, Recall, Redo, Reset, Undo
+from sandbox.curves import Curves
+from sandbox.draw import words
+from sandbox.frame import Frame
 from sandbox.session import Session
+from sandbox.views.conductor import Conductor
 from sandbox.views.solver_thread import Snapshot, SolverThread
+from scenes import registry
 
 Settings = Mapping[str, object]
 
 PATIENCE = 2.0  # with a thread that is to end [s]
 LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
+SIDE_BY_SIDE = ("regular", "mixed", "auxetic")  # from the left
+MOST_MISSED = 1500  # increments that a packing that joins repeats; after more all begin anew
+
+
+@dataclass
+class Pane:
+    """One packing: its session and the thread that runs it."""
+
+    packing: str
+    session: Session
+    solver: SolverThread
 
 
 class Run:
-    """At most one scene at a time. Nothing here waits for the solver, except ``close``."""
+    """At most one scene at a time, in one pane or several. Nothing here waits for a solver, except ``close``."""
 
     def __init__(self, packing: str, seed: int, make: Callable[..., Session] = Session) -> None:
         self.packing = packing
         self.seed = seed
         self.scene = ""
+        self.curves = Curves()
         self._make = make
-        self._settings: Settings | None = None
-        self._session: Session | None = None
-        self._solver: SolverThread | None = None
+        self._settings: dict[str, object] = {}
+        self._built_with: dict[str, object] = {}  # settings when the scene was last built or reset
+        self._first = packing  # of the pane that was there first
+        self._straight = True  # has nobody gone back in time since the scene was last built?
+        self._gone_back = 0  # serial of the snapshot when somebody did
+        self._panes: list[Pane] = []
+        self._conductor = Conductor()
+        self._speed = math.inf
         self._leaving: list[SolverThread] = []
         self._paused_by_menu = False
 
+    # What is there.
+
+    @property
+    def snapshots(self) -> tuple[Snapshot, ...]:
+        """What the solvers' threads have published, from the left."""
+        return tuple(pane.solver.snapshot for pane in self._panes)
+
     @property
     def snapshot(self) -> Snapshot:
-        """What the solver's thread has published."""
-        return Snapshot("stopped") if self._solver is None else self._solver.snapshot
+        """The same of the packing that was there first."""
+        main = self._main
+        return Snapshot("stopped") if main is None else main.solver.snapshot
+
+    @property
+    def packings(self) -> tuple[str, ...]:
+        """Of the panes, from the left."""
+        return tuple(pane.packing for pane in self._panes)
+
+    @property
+    def comparing(self) -> bool:
+        """Are there several packings?"""
+        return len(self._panes) > 1
 
     @property
     def exists(self) -> bool:
         """Has a scene been started?"""
-        return self._solver is not None
+        return bool(self._panes)
 
     @property
     def paused(self) -> bool:
-        """Is the solver held?"""
-        return self._solver is not None and self._solver.paused
+        """Are the solvers held?"""
+        return bool(self._panes) and self._conductor.paused
 
-    def start(self, scene: str, settings: Settings | None = None) -> None:
-        """Leave what runs and build a scene. Raises InputError for one that does not exist."""
-        session = self._make(scene, self.packing, self.seed, dict(settings or {}))
-        if self._solver is not None and not self._solver.stop(0.2):
-            self._leaving.append(self._solver)  # it is compiling, and ends by itself later
-        self.scene, self._settings, self._session = scene, settings, session
+    @property
+    def _main(self) -> Pane | None:
+        if not self.comparing:
+            return self._panes[0] if self._panes else None
+        return next((p for p in self._panes if p.packing == self._first), self._panes[0])
+
+    # Beginning and ending.
+
+    def start(
+        self, scene: str, settings: Settings | None = None, packings: Sequence[str] = ()
+    ) -> None:
+        """Leave what runs and build a scene, with these packings side by side if any are named.
+
+        Raises InputError for what does not exist.
+        """
+        given = dict(settings or {})
+        kinds = tuple(packings) or (self.packing,)
+        sessions = [self._make(scene, kind, self.seed, dict(given)) for kind in kinds]
+        self._keep_curves()
+        self._leave(self._panes)
+        self.scene, self._settings, self._built_with = scene, given, dict(given)
+        self._first = self.packing if self.packing in kinds else kinds[0]
+        self._straight = True
         self._paused_by_menu = False
-        self._solver = SolverThread(session)
-        self._solver.start()
+        self._conductor = Conductor(begins_anew=self._begins_anew)
+        self._conductor.set_speed(self._speed)
+        self._panes = [self._pane(*each) for each in zip(kinds, sessions, strict=True)]
+
+    def compare(self) -> str:
+        """Put the scene's other packings beside the present one, or take them away; returns what to say."""
+        if self.comparing:
+            self._only_main()
+            return words.COMPARE_OFF
+        frame = self.snapshot.frame
+        kinds = self.comparable()
+        if frame is None or self.snapshot.phase != "running":
+            return words.COMPARE_LATER
+        if len(kinds) < 2 or frame.packing not in kinds:
+            return words.COMPARE_NOTHING
+        repeat = self._can_be_repeated(frame)
+        if not repeat:
+            self.seed, self._settings = frame.seed, dict(frame.settings)
+            self._built_with = dict(self._settings)
+        self.packing = self._first = frame.packing
+        others = [kind for kind in kinds if kind != frame.packing]
+        made = [self._make(self.scene, kind, self.seed, dict(self._built_with)) for kind in others]
+        if not repeat:
+            self.send(Reset())
+            self._conductor.forget_past()
+        panes = [self._pane(*each) for each in zip(others, made, strict=True)]
+        self._panes = sorted([*self._panes, *panes], key=lambda pane: kinds.index(pane.packing))
+        return words.COMPARE_ON if repeat else words.COMPARE_ANEW
+
+    def comparable(self) -> tuple[str, ...]:
+        """The packings of the scene that can stand side by side."""
+        if self.scene not in registry.names():
+            return ()
+        known = registry.get(self.scene).packings
+        return tuple(kind for kind in SIDE_BY_SIDE if kind in known)
+
+    def cancel(self) -> bool:
+        """Break off what is being built; True if a run is left to go on with.
+
+        Side by side, only the packing that was there first stays.
+        """
+        building = [s.phase in ("building", "catching up") for s in self.snapshots]
+        if not any(building):
+            return self.exists
+        first = self.snapshot
+        if self.comparing:
+            self._only_main()
+        if first.phase == "building" and self._panes:
+            self._panes[0].solver.cancel()
+            if first.frame is None:
+                self._leave(self._panes)
+                self._panes = []
+            else:
+                self._straight, self._gone_back = False, first.serial
+                self._follow(first.frame)
+        return self.exists
+
+    def _pane(self, packing: str, session: Session) -> Pane:
+        solver = SolverThread(session, conductor=self._conductor)
+        solver.start()
+        return Pane(packing, session, solver)
+
+    def _only_main(self) -> None:
+        main = self._main
+        self._keep_curves()
+        self._leave([pane for pane in self._panes if pane is not main])
+        self._panes = [] if main is None else [main]
+
+    def _leave(self, panes: Sequence[Pane]) -> None:
+        for pane in panes:
+            pane.solver.cancel()
+        # One that compiles ends by itself later.
+        self._leaving += [pane.solver for pane in panes if not pane.solver.stop(0.2)]
+
+    def _keep_curves(self) -> None:
+        for snapshot in self.snapshots:
+            self.curves.keep(snapshot.frame)
+
+    # What is asked of it.
 
     def send(self, command: Command) -> None:
-        """A command to the solver."""
-        if self._solver is not None:
-            self._solver.submit(command)
+        """A command to all solvers. Raises InputError for a setting that cannot be."""
+        if not self._panes:
+            return
+        if isinstance(command, Change):
+            self._note_change(command)
+        elif isinstance(command, (Undo, Redo, Recall)):
+            command = self._back(command)
+        if self._begins_anew(command):
+            self._keep_curves()
+            self._built_with = dict(self._settings)
+            self._straight = True
+        self._conductor.submit(command)
 
     def reset(self) -> None:
         """To the start; a run that has failed is built anew."""
-        if self.snapshot.phase == "failed":
-            self.start(self.scene, self._settings)
+        if any(snapshot.phase == "failed" for snapshot in self.snapshots):
+            self.start(self.scene, self._settings, self.packings if self.comparing else ())
         else:
             self.send(Reset())
 
     def pause_or_go_on(self) -> None:
         """Hold, or go on."""
-        if self._solver is not None:
-            self._solver.pause(not self._solver.paused)
+        self._conductor.pause(not self._conductor.paused)
 
     def step(self) -> None:
         """One increment."""
-        if self._solver is not None:
-            self._solver.step()
+        self._conductor.step()
+
+    def set_speed(self, increments_per_second: float) -> None:
+        """No more increments a second than that; inf: as many as the solvers manage."""
+        self._speed = increments_per_second
+        self._conductor.set_speed(increments_per_second)
 
     def drive(self, on: bool) -> None:
         """The scripted drive."""
         self.send(Protocol(on))
 
     def change_packing(self, packing: str) -> None:
-        """Pack again, with other grains."""
-        self.packing = packing
-        self.send(Change("packing", packing))
+        """Pack again, with other grains. Side by side all are there already."""
+        if not self.comparing:
+            self.send(Change("packing", packing))
 
     def change_seed(self) -> None:
         """Pack again, by other chances."""
-        self.seed += 1
-        self.send(Change("seed", self.seed))
+        self.send(Change("seed", self.seed + 1))
 
     def hold(self) -> None:
         """Pause while the menu is open."""
-        if self._solver is not None and not self._solver.paused:
+        if self._panes and not self._conductor.paused:
             self._paused_by_menu = True
-            self._solver.pause(True)
+            self._conductor.pause(True)
 
     def go_on(self) -> None:
         """The menu was closed: as it was before."""
-        frame = self.snapshot.frame
-        if frame is not None:
-            self.packing = frame.packing  # whatever was looked at in the menu
-        if self._solver is not None and self._paused_by_menu:
-            self._solver.pause(False)
+        if self._panes:
+            self.packing = self._first  # whatever was looked at in the menu
+        if self._paused_by_menu:
+            self._conductor.pause(False)
         self._paused_by_menu = False
 
+    def tick(self) -> None:
+        """Once a picture: what was undone may be a packing, a seed or a setting."""
+        seen = self.snapshot
+        if not self._straight and seen.serial > self._gone_back and seen.phase == "running":
+            self._follow(seen.frame)
+
     def close(self, log: str | os.PathLike[str] | None) -> bool:
-        """End the threads and write the session's log if one is wanted.
+        """End the threads and write the session's log if one is wanted, side by side that of the first packing.
 
         False if a thread is still compiling. Raises InputError if the log cannot be written.
         """
+        main = self._main
         wanted = log is not None and self.snapshot.frame is not None
-        ended = self._solver is None or self._solver.stop(LONG if wanted else PATIENCE)
-        if log is not None and wanted and ended and self._session is not None:
+        others = [pane.solver for pane in self._panes if pane is not main]
+        ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
+        if log is not None and wanted and ended and main is not None:
             try:
-                self._session.write_log(os.fspath(log))
+                main.session.write_log(os.fspath(log))
             except OSError as error:
                 raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
-        return all(solver.stop(PATIENCE) for solver in self._leaving) and ended
+        stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
+        return all(stopped) and ended
+
+    # What is known of the session without asking it.
+
+    def _note_change(self, change: Change) -> None:
+        if change.name == "seed" and isinstance(change.value, int):
+            self.seed = change.value
+        elif change.name == "packing":
+            self.packing = self._first = str(change.value)
+            self._panes[0].packing = self._first
+        elif change.name != "scene":
+            wanted = {**self._settings, change.name: change.value}
+            if self.scene in registry.names():
+                registry.get(self.scene).settings(wanted)
+            self._settings = wanted
+
+    def _back(self, command: Undo | Redo | Recall) -> Command:
+        """A way back that all packings can go. Raises InputError if there is none."""
+        frames = [seen.frame for seen in self.snapshots if seen.frame is not None]
+        if self.comparing and isinstance(command, Recall):
+            first = max(frame.first_kept for frame in frames)
+            last = min(frame.last_kept for frame in frames)
+            command = Recall(max(first, min(command.increment, last)))
+        elif self.comparing:
+            able = [f.can_undo if isinstance(command, Undo) else f.can_redo for f in frames]
+            if not all(able):
+                raise InputError("not all packings can go back there")
+        self._straight, self._gone_back = False, self.snapshot.serial
+        return command
+
+    def _begins_anew(self, command: Command) -> bool:
+        """Does the command end the curve and begin another?"""
+        if not isinstance(command, Change):
+            return isinstance(command, Reset)
+        if self.scene not in registry.names():
+            return True
+        live = {p.name for p in registry.get(self.scene).parameters if p.live}
+        return command.name not in live
+
+    def _can_be_repeated(self, frame: Frame) -> bool:
+        """Can another packing be brought to where this one is, by the same commands?"""
+        settings = registry.get(self.scene).settings(self._settings)
+        same = frame.seed == self.seed and dict(frame.settings) in ({}, settings)
+        return same and self._straight and self._conductor.turns <= MOST_MISSED
+
+    def _follow(self, frame: Frame | None) -> None:
+        """What the solver has is what there is."""
+        if frame is None:
+            return
+        if not self.comparing:
+            self.packing = self._first = self._panes[0].packing = frame.packing
+        self.seed = frame.seed
+        self._settings = dict(frame.settings)

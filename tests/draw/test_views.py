@@ -178,7 +178,7 @@ def test_legends_fit(
             values = None if view.measure is None else view.measure(frame)
             look = Look(view, chains or view.only_chains, values, 0.0125)
             shown = replace(frame, title=title)
-            draw_header(painter, rect, shown, look, 12.5 if look.chains else None)
+            draw_header(painter, rect, [shown], look, 12.5 if look.chains else None)
             for _, place in texts:
                 assert rect.contains(place)
             for (_, place), (_, other) in combinations(texts, 2):

@@ -1,0 +1,140 @@
+"""One packing among several: the strip above its canvas, and plates with words at the foot of a canvas."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pygame
+
+from sandbox.draw import words
+from sandbox.draw.painter import Painter
+from sandbox.draw.status import draw_lamp, lamp, lamp_space
+from sandbox.draw.text import BODY, SMALL, Type
+from sandbox.draw.theme import packing_colour, packing_dash
+from sandbox.frame import Frame
+
+STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
+SWATCH = 26.0  # of the packing's curve
+MOST_LINES = 3  # on a plate
+COVERED = 0.4  # of a canvas' height, by plates, at most
+FRESH = 40  # an event is spoken of for so many increments
+
+
+def strip_of(canvas: pygame.Rect, scale: float) -> tuple[pygame.Rect, pygame.Rect]:
+    """A canvas cut into its strip and what is left for the grains."""
+    height = min(round(STRIP * scale), canvas.height // 4)
+    strip = pygame.Rect(canvas.left, canvas.top, canvas.width, height)
+    return strip, pygame.Rect(canvas.left, strip.bottom, canvas.width, canvas.height - height)
+
+
+def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
+    """Which packing this is, in the colour and dash of its curve; whether to believe it; grains out."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    painter.fill(strip, theme.panel)
+    thin = max(round(scale), 1)
+    painter.fill(pygame.Rect(strip.left, strip.bottom - thin, strip.width, thin), theme.hairline)
+    middle = strip.centery
+    pad, gap = round(12 * scale), round(14 * scale)
+    left, right = strip.left + pad, strip.right - pad
+
+    dash = [length * scale for length in packing_dash(frame.packing)]
+    ends = np.array([left, left + SWATCH * scale])
+    colour = packing_colour(frame.packing)
+    painter.polyline(ends, np.array([middle, middle]), 4.0 * scale, colour, strip, dash)
+    x = left + SWATCH * scale + round(8 * scale)
+    name = words.PACKINGS.get(frame.packing, frame.packing)
+    name = type_.shortened(name, BODY, right - x, bold=True)
+    x = painter.text(name, x, middle, bold=True, clip=strip).right + gap
+
+    state = lamp(frame, theme)
+    out = words.GRAINS_OUT.format(count=frame.grains_out) if frame.grains_out else ""
+    room = right - x - lamp_space(painter)
+    choices = [(state.words, out), (state.short, out), (state.state, out), (state.state, "")]
+    for said, aside in choices:
+        if type_.width(said, SMALL) + (type_.width(aside, SMALL) + gap) * bool(aside) <= room:
+            break
+    else:
+        said = aside = ""
+    if room >= 0:
+        draw_lamp(painter, x, middle, state.colour)
+        painter.text(said, x + lamp_space(painter), middle, size=SMALL, clip=strip)
+    if aside:
+        tint = theme.soft_text
+        painter.text(aside, right, middle, size=SMALL, colour=tint, anchor="right", clip=strip)
+
+
+def said_of(frame: Frame) -> tuple[str, ...]:
+    """What a frame has to say: its notices, and an event that has just happened."""
+    notices = [words.say(notice) for notice in frame.notices]
+    if frame.events and frame.increment - frame.events[-1].increment < FRESH:
+        event = words.say(frame.events[-1].text)
+        if event not in notices:
+            notices.insert(0, event)
+    return tuple(notices)
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """Words in a rounded box, a line or a few."""
+
+    rect: pygame.Rect
+    lines: tuple[str, ...]
+
+
+def place_plates(
+    type_: Type, canvas: pygame.Rect, notices: Sequence[str], bottom: float
+) -> list[Plate]:
+    """Plates from ``bottom`` [px] upwards, the newest lowest; what finds no room on the canvas is left out."""
+    scale = type_.scale
+    line, pad = type_.height(BODY), round(12 * scale)
+    room = canvas.width - round(40 * scale)
+    top = canvas.bottom - max(COVERED * canvas.height, line + pad)
+    placed: list[Plate] = []
+    for notice in reversed(notices):
+        fitting = min(int((bottom - top - pad) // line), MOST_LINES)
+        if fitting < 1 and placed:
+            break
+        lines = _at_most(type_, type_.wrapped(notice, BODY, room), max(fitting, 1), room)
+        width = max((type_.width(text, BODY) for text in lines), default=0)
+        rect = pygame.Rect(0, 0, width + round(32 * scale), len(lines) * line + pad)
+        rect.midbottom = (canvas.centerx, round(bottom))
+        if not lines or rect.top < canvas.top:
+            break
+        placed.append(Plate(rect, tuple(lines)))
+        bottom = rect.top - 6 * scale
+    return placed
+
+
+def _at_most(type_: Type, lines: list[str], most: int, room: float) -> list[str]:
+    """So many lines, the last of which says that there were more."""
+    if len(lines) <= most:
+        return lines
+    return [*lines[: most - 1], type_.shortened(f"{lines[most - 1]} …", BODY, room)]
+
+
+def draw_plates(painter: Painter, plates: Sequence[Plate]) -> None:
+    """Plain words on plates."""
+    scale, line = painter.scale, painter.type.height(BODY)
+    for plate in plates:
+        painter.box(
+            plate.rect,
+            painter.theme.panel,
+            radius=0.5 * line + 6.0 * scale,
+            edge=painter.theme.hairline,
+            edge_width=1.5 * scale,
+            alpha=0.94,
+        )
+        y = plate.rect.top + 0.5 * (plate.rect.height - len(plate.lines) * line) + 0.5 * line
+        for text in plate.lines:
+            painter.text(text, plate.rect.centerx, y, anchor="centre")
+            y += line
+
+
+def above(canvas: pygame.Rect, plates: Sequence[Plate], least: float) -> pygame.Rect:
+    """The canvas without the part that plates cover; all of it if less than ``least`` [px] were left."""
+    top = min((plate.rect.top for plate in plates), default=canvas.bottom)
+    free = canvas.copy()
+    free.height = top - canvas.top
+    return free if free.height >= least else canvas
