@@ -13,8 +13,8 @@ from sandbox.run import Run
 from scenes.scene import Scene, Setup, Values
 
 MOST_MOMENTS = 100
-MOST_RUNS = 4  # of those that a reset or a new start has ended
-OLD_RUN_BYTES = MOST_BYTES // 8  # of the checkpoints of each of them
+MOST_RUNS = 8  # of those that a reset or a new start has ended
+OLD_RUN_BYTES = MOST_BYTES // 16  # of the checkpoints of each of them
 ONE_GESTURE = 20  # increments: changes of one parameter no further apart are undone together
 
 
