@@ -167,6 +167,10 @@ class Frame:
     can_redo: bool = False
     events: tuple[Event, ...] = ()  # all since the start, the newest last
 
+    # What was asked for and could not be done: how often, and why the last time, in plain words.
+    refusals: int = 0
+    refusal: str = ""
+
     @property
     def grains(self) -> int:
         """How many grains there are."""

@@ -10,6 +10,7 @@ from core.packing import Packing
 from sandbox.checkpoints import MOST_BYTES, Checkpoint
 from sandbox.commands import Change, Command, Erase, Place, Recall, Retype
 from sandbox.run import Run
+from sandbox.scene_file import SceneFile
 from scenes.scene import Scene, Setup, Values
 
 MOST_MOMENTS = 100
@@ -26,6 +27,7 @@ class Start:
     setup: Setup
     bodies: tuple[BodyState, ...]
     values: Values
+    file: SceneFile | None = None  # what it was read from
 
 
 @dataclass(frozen=True)

@@ -304,6 +304,15 @@ class Run:
         assert self._kept is not None
         return self._kept
 
+    @property
+    def settled(self) -> Checkpoint:
+        """The state between increments: as it is, or as it was before the one under way."""
+        if self._kept is not None:
+            return self._kept
+        if self.engine.busy:
+            return self.checkpoints.at(len(self.history) - 1)
+        return self.present()
+
     def _keep(self) -> None:
         """Keep the state after an increment."""
         before = self.checkpoints.at(self.checkpoints.last) if len(self.checkpoints) else None

@@ -11,19 +11,20 @@ import io
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.engine_state import EngineState
 from core.errors import InputError
 from core.files import atomic_write
 from core.friction import Friction
 from core.packing import Packing
 from core.rigid import Point
-from sandbox.editing import drawn_wall, line_of
+from sandbox.editing import drawn_wall, line_of, poisson_ratio
 from sandbox.scene_checks import (
     Placement,
     check_fit,
@@ -36,7 +37,7 @@ from sandbox.scene_checks import (
 from sandbox.toml_text import toml_text
 from scenes import registry
 from scenes.parameter import Value
-from scenes.scene import Setup
+from scenes.scene import Setup, Values
 
 if TYPE_CHECKING:
     from sandbox.session import Session
@@ -83,47 +84,73 @@ class SceneFile:
     text: bytes  # the two files themselves, to be put into a log
     data: bytes
 
+    def of_kind(self, kind: str) -> SceneFile:
+        """The same places with grains of another kind of packing, to be looked at side by side; nothing to be logged."""
+        if kind == self.packing:
+            return self
+        nu = np.array([poisson_ratio(self.settings, one) for one in ("regular", "auxetic")])
+        share = {"regular": 0.0, "auxetic": 1.0}.get(
+            kind, float(self.settings.get("auxetic_fraction", 0.5))
+        )
+        steps = np.floor(np.arange(len(self.grains) + 1) * share + 1e-9)
+        grains = self.grains.copy()
+        grains.poisson_ratio = nu[np.diff(steps).astype(np.int64)]
+        return replace(self, packing=kind, grains=grains, text=b"", data=b"")
+
+
+@dataclass(frozen=True)
+class Made:
+    """What there is to be written: a state between two increments, to which nobody writes any more. Any thread may have it."""
+
+    scene: str
+    packing: str
+    seed: int
+    settings: Values
+    state: EngineState
+    file: SceneFile | None = None  # what it goes on from
+    worth_keeping: bool = True  # has a person done anything?
+
 
 def write_scene(
     path: str | os.PathLike[str],
-    session: Session,
+    what: Session | Made,
     grains: str | None = None,
     *,
-    compressed: bool = True,
+    lasting: bool = True,
 ) -> None:
     """Write ``path`` and the grains' file beside it, both or neither; ``grains`` is its name if not that of ``path``.
 
-    Raises InputError for a name that does not end in .toml, OSError as the system does, RuntimeError within an increment.
+    During an increment it is the state before. ``lasting``: see ``core.files``. Raises InputError for a name that does not end
+    in .toml, OSError as the system does.
     """
     path = Path(path)
     if path.suffix != SUFFIX:
         raise InputError(f"{path}: the name of a scene file must end in {SUFFIX}")
-    if session.busy:
-        raise RuntimeError("finish the increment before writing the scene down")
+    made = what if isinstance(what, Made) else what.made()
     name = grains or path.with_suffix(".npz").name
-    setup, friction = session.run.setup, session.run.engine.friction
+    friction, bodies = made.state.friction, made.state.bodies
     extra: dict[str, NDArray[Any]] = {}
     if friction is not None:
         keys, slips = friction.memory()
         extra = {"spin": friction.spin, "contact_keys": keys, "contact_slips": slips}
     packed = io.BytesIO()
-    setup.packing.write(packed, extra, compressed=compressed)
+    made.state.packing.write(packed, extra, compressed=lasting)
     text = toml_text(
         {
             "format": FORMAT,
             "version": VERSION,
-            "scene": session.scene.name,
-            "packing": session.packing,
-            "seed": session.seed,
+            "scene": made.scene,
+            "packing": made.packing,
+            "seed": made.seed,
             "grains": name,
             "grains_sha256": hashlib.sha256(packed.getvalue()).hexdigest(),
-            "settings": dict(session.settings),
+            "settings": dict(made.settings),
             "bodies": [
-                {"name": b.name, "x": b.position[0], "y": b.position[1], "angle": b.angle}
-                for b in setup.world.bodies
-                if not b.drawn
+                {"name": b.body.name, "x": b.position[0], "y": b.position[1], "angle": b.angle}
+                for b in bodies
+                if not b.body.drawn
             ],
-            "walls": [{"points": line_of(wall)} for wall in setup.world.drawn],
+            "walls": [{"points": line_of(b.body)} for b in bodies if b.body.drawn],
         }
     )
     try:
@@ -131,7 +158,10 @@ def write_scene(
     except UnicodeEncodeError:
         raise InputError(f"{str(path)!r}: choose a name with plain letters") from None
     # The grains come first, so that there is never a text without them.
-    with atomic_write(path) as toml, atomic_write(path.with_name(name)) as npz:
+    with (
+        atomic_write(path, lasting=lasting) as toml,
+        atomic_write(path.with_name(name), lasting=lasting) as npz,
+    ):
         npz.write(packed.getvalue())
         toml.write(written)
 

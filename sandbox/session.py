@@ -6,6 +6,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import get_args
 
 from core.engine_state import keep_bodies, place_bodies
@@ -35,7 +36,7 @@ from sandbox.log import Log
 from sandbox.log import write_log as write_log_file
 from sandbox.past import OLD_RUN_BYTES, Moment, Past, Start
 from sandbox.run import Run
-from sandbox.scene_file import SceneFile, put_into, read_scene
+from sandbox.scene_file import Made, SceneFile, put_into, read_scene
 from scenes import registry
 from scenes.scene import Check, Ingredients, Scene, Values
 from scenes.text import message
@@ -71,6 +72,7 @@ class Session:
         self._lock = threading.Lock()
         self._commands: list[tuple[int, Command]] = []
         self._finished = 0
+        self._refusals = 0, ""  # how many commands could not be carried out, and why the latest
         self._run: Run | None = None
         self._start: Start | None = None
         self._past = Past()
@@ -98,7 +100,8 @@ class Session:
         )
         if self._file is not None:
             put_into(setup, self._file)
-        start = Start(setup.packing.copy(), setup, keep_bodies(setup.world), self.settings)
+        bodies = keep_bodies(setup.world)
+        start = Start(setup.packing.copy(), setup, bodies, self.settings, self._file)
         run = Run(self.scene, self.settings, self.packing, self.seed, setup)
         if self._file is not None and run.failed:
             raise InputError(f"{self._file.name}: its grains cannot be relaxed")
@@ -134,6 +137,7 @@ class Session:
                 self._apply(command)
             except InputError as error:
                 self.run.say(message(error))
+                self._refusals = self._refusals[0] + 1, message(error)
                 continue
             self._commands.append((self._finished, command))
 
@@ -193,6 +197,7 @@ class Session:
             self.run.checkpoints.squeeze(OLD_RUN_BYTES)
         self.scene, self.packing, self.seed = moment.scene, moment.packing, moment.seed
         self._start, self._run = moment.start, moment.run
+        self._file = moment.start.file
         self._run.restore(moment.checkpoint)
         self._run.still()
         self.settings = self._run.values
@@ -277,11 +282,19 @@ class Session:
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""
         now = self.run.kept
-        return self.run.frame(self._past.can_undo(now), self._past.can_redo)
+        frame = self.run.frame(self._past.can_undo(now), self._past.can_redo)
+        return replace(frame, refusals=self._refusals[0], refusal=self._refusals[1])
 
     def state_hash(self) -> str:
         """Hash of every bit of the state."""
         return self.run.state_hash()
+
+    def made(self) -> Made:
+        """What there is to be kept in a file; quick, as it shares the checkpoint that is kept anyway."""
+        kept = self.run.settled
+        worth = bool(self._commands) or self._file is not None
+        scene, file = self.scene.name, self._file
+        return Made(scene, self.packing, self.seed, kept.values, kept.engine, file, worth)
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""

@@ -12,12 +12,14 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from typing import get_args
 
-from sandbox.commands import Change, Command, Move, Recall, Redo, Reset, Undo
+from sandbox.commands import Change, Command, Edit, Move, Recall, Redo, Reset, Undo
 
 Turn = tuple[Command, ...]
 
-AT_ONCE = (Reset, Change, Recall, Undo, Redo)  # they take effect while paused, too
+# They take effect while paused, too.
+AT_ONCE = (Reset, Change, Recall, Undo, Redo, *get_args(Edit))
 
 
 def begins_anew(command: Command) -> bool:

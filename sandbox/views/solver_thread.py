@@ -19,6 +19,7 @@ from typing import Literal, Protocol
 from core.errors import InputError
 from sandbox.commands import Command
 from sandbox.frame import Frame
+from sandbox.scene_file import Made
 from sandbox.views.conductor import Conductor, Turn
 from scenes.text import message
 
@@ -55,6 +56,9 @@ class SessionLike(Protocol):
     def frame(self) -> Frame:
         """A picture of the state."""
 
+    def made(self) -> Made | None:
+        """What there is to be kept in a file."""
+
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
@@ -66,6 +70,7 @@ class Snapshot:
     frame: Frame | None = None  # the latest picture; kept through a rebuild and a failure
     error: str = ""  # plain words, when failed
     serial: int = 0  # counts publications
+    made: Made | None = None  # what there is to be kept in a file
 
 
 class _Stopped(Exception):
@@ -166,7 +171,9 @@ class SolverThread:
             self._cancel = False
             raise InputError(CANCELLED)
         now = self._snapshot
-        self._snapshot = Snapshot("building", text, fraction, now.frame, "", now.serial + 1)
+        self._snapshot = replace(
+            now, phase="building", text=text, fraction=fraction, error="", serial=now.serial + 1
+        )
 
     def _fail(self, message: str) -> None:
         with contextlib.suppress(Exception):  # the last state helps to understand, if there is one
@@ -179,8 +186,9 @@ class SolverThread:
         share = self._member.caught_up
         if phase is None:
             phase = "running" if share == 1.0 else "catching up"
-        frame = self._session.frame()
-        self._snapshot = Snapshot(phase, "", share, frame, serial=self._snapshot.serial + 1)
+        frame, made = self._session.frame(), self._session.made()
+        serial = self._snapshot.serial + 1
+        self._snapshot = Snapshot(phase, "", share, frame, serial=serial, made=made)
         self._pictured = time.perf_counter()
 
     def _next_turn(self, advanced: bool) -> Turn | None:

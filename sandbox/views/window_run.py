@@ -8,10 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from core.errors import InputError
+from sandbox.autosave import Autosave, Leftover
 from sandbox.commands import Change, Command, Protocol, Recall, Redo, Reset, Undo
 from sandbox.curves import Curves
 from sandbox.draw import words
 from sandbox.frame import Frame
+from sandbox.scene_file import SceneFile, read_scene, write_scene
 from sandbox.session import Session
 from sandbox.views.conductor import Conductor
 from sandbox.views.solver_thread import Snapshot, SolverThread
@@ -19,6 +21,7 @@ from scenes import registry
 
 Settings = Mapping[str, object]
 
+NOTHING_TO_SAVE = "there is nothing to save yet"
 PATIENCE = 2.0  # with a thread that is to end [s]
 LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
 SIDE_BY_SIDE = ("regular", "mixed", "auxetic")  # from the left
@@ -37,7 +40,14 @@ class Pane:
 class Run:
     """At most one scene at a time, in one pane or several. Nothing here waits for a solver, except ``close``."""
 
-    def __init__(self, packing: str, seed: int, make: Callable[..., Session] = Session) -> None:
+    def __init__(
+        self,
+        packing: str,
+        seed: int,
+        make: Callable[..., Session] = Session,
+        autosave: Autosave | None = None,
+    ) -> None:
+        self.autosave = autosave
         self.packing = packing
         self.seed = seed
         self.scene = ""
@@ -105,6 +115,39 @@ class Run:
         given = dict(settings or {})
         kinds = tuple(packings) or (self.packing,)
         sessions = [self._make(scene, kind, self.seed, dict(given)) for kind in kinds]
+        self._begin(scene, given, kinds, sessions)
+
+    def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
+        """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""
+        kept = file if isinstance(file, SceneFile) else read_scene(file)
+        session = Session.from_file(kept)
+        self.packing, self.seed = kept.packing, kept.seed
+        self._begin(kept.scene, dict(kept.settings), (kept.packing,), [session])
+
+    def take_up(self, leftover: Leftover) -> None:
+        """Go on where a program that is gone had to stop. Its autosave is taken away as soon as there is another."""
+        self.open(leftover.file)
+        if self.autosave is not None:
+            self.autosave.adopt(leftover)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write what there is down as a scene file. Raises InputError if that cannot be."""
+        made = self.snapshot.made
+        if made is None:
+            raise InputError(NOTHING_TO_SAVE)
+        try:
+            write_scene(path, made)
+        except OSError as error:
+            raise InputError(f"{os.fspath(path)}: {error.strerror or error}") from error
+
+    def _begin(
+        self,
+        scene: str,
+        given: dict[str, object],
+        kinds: tuple[str, ...],
+        sessions: Sequence[Session],
+    ) -> None:
+        """Leave what runs, and begin with these."""
         self._keep_curves()
         self._leave(self._panes)
         self.scene, self._settings, self._built_with = scene, given, dict(given)
@@ -132,13 +175,20 @@ class Run:
             self._built_with = dict(self._settings)
         self.packing = self._first = frame.packing
         others = [kind for kind in kinds if kind != frame.packing]
-        made = [self._make(self.scene, kind, self.seed, dict(self._built_with)) for kind in others]
+        made = [self._another(kind) for kind in others]
         if not repeat:
             self.send(Reset())
             self._conductor.forget_past()
         panes = [self._pane(*each) for each in zip(others, made, strict=True)]
         self._panes = sorted([*self._panes, *panes], key=lambda pane: kinds.index(pane.packing))
         return words.COMPARE_ON if repeat else words.COMPARE_ANEW
+
+    def _another(self, kind: str) -> Session:
+        """The same start with another packing."""
+        main = self.snapshot.made
+        if main is not None and main.file is not None:
+            return Session.from_file(main.file.of_kind(kind))
+        return self._make(self.scene, kind, self.seed, dict(self._built_with))
 
     def comparable(self) -> tuple[str, ...]:
         """The packings of the scene that can stand side by side."""
@@ -207,10 +257,13 @@ class Run:
 
     def reset(self) -> None:
         """To the start; a run that has failed is built anew."""
-        if any(snapshot.phase == "failed" for snapshot in self.snapshots):
-            self.start(self.scene, self._settings, self.packings if self.comparing else ())
-        else:
+        made = self.snapshot.made
+        if not any(snapshot.phase == "failed" for snapshot in self.snapshots):
             self.send(Reset())
+        elif made is not None and made.file is not None:
+            self.open(made.file)
+        else:
+            self.start(self.scene, self._settings, self.packings if self.comparing else ())
 
     def pause_or_go_on(self) -> None:
         """Hold, or go on."""
@@ -255,15 +308,21 @@ class Run:
     def tick(self) -> None:
         """Once a picture: what was undone may be a packing, a seed or a setting."""
         seen = self.snapshot
+        if self.autosave is not None:
+            self.autosave.keep(seen.made)
         if not self._straight and seen.serial > self._gone_back and seen.phase == "running":
             self._follow(seen.frame)
 
-    def close(self, log: str | os.PathLike[str] | None) -> bool:
+    def close(self, log: str | os.PathLike[str] | None, clean: bool = True) -> bool:
         """End the threads and write the session's log if one is wanted, side by side that of the first packing.
 
-        False if a thread is still compiling. Raises InputError if the log cannot be written.
+        A ``clean`` end takes the autosave away. False if a thread is still compiling. Raises InputError if the log cannot be
+        written.
         """
         main = self._main
+        if self.autosave is not None:
+            self.autosave.keep(self.snapshot.made)
+            self.autosave.close(clean)
         wanted = log is not None and self.snapshot.frame is not None
         others = [pane.solver for pane in self._panes if pane is not main]
         ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)

@@ -8,7 +8,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from core.errors import InputError
-from sandbox.commands import Change, Command, Grab, Move, Protocol, Release, Reset
+from sandbox.commands import (
+    Change,
+    Command,
+    Grab,
+    Move,
+    Protocol,
+    Recall,
+    Release,
+    Reset,
+    Scalar,
+)
 from sandbox.frame import Frame
 from sandbox.views.solver_thread import SolverThread
 from tests.draw.frames import intruder_frame
@@ -30,6 +40,8 @@ class FakeSession:
         if scene == "unknown":
             raise InputError("no scene is called 'unknown'")
         self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
+        self.changed: dict[str, Scalar] = {}  # parameters
+        self.last_kept = 0  # increments that can be gone back to
         self.commands: list[Command] = []  # in the order in which they took effect
         self.built = 0
         self.increments = 0
@@ -77,6 +89,7 @@ class FakeSession:
         if self._slice:
             return False
         self.increments += 1
+        self.last_kept = self.increments
         if self._target is not None:
             way = self._target[0] - self._place[0]
             self._place = (self._place[0] + max(min(way, STEP), -STEP), self._place[1])
@@ -100,6 +113,10 @@ class FakeSession:
             case Change("seed", value):
                 self.seed = int(value)
                 self.built += 1
+            case Change(name, value):
+                self.changed[name] = value
+            case Recall(increment):
+                self.increments = increment
 
     @property
     def busy(self) -> bool:
@@ -130,7 +147,13 @@ class FakeSession:
             handles=(handle,),
             busy=self.busy,
             protocol=self._script,
+            settings={k: v for k, v in self.changed.items() if not isinstance(v, str)},
+            last_kept=max(self.last_kept, self.increments),
+            can_undo=bool(self.commands),
         )
+
+    def made(self) -> None:
+        """Nothing to be kept in a file."""
 
     def write_log(self, path: str) -> None:
         assert not self.busy, "a log ends between increments"
