@@ -247,7 +247,8 @@ class Parts:
 def parts_of(control: Simple, rect: pygame.Rect, type_: Type) -> Parts:
     """Divide a control's rectangle."""
     scale = type_.scale
-    line = type_.height(SMALL) if rect.height > round(TARGET * scale) + 2 else 0
+    titled = isinstance(control, (Slider, Choice, Stepper, TextField)) and control.title
+    line = type_.height(SMALL) if titled else 0
     title = pygame.Rect(rect.left, rect.top, rect.width, line)
     body = pygame.Rect(rect.left, rect.top + line, rect.width, rect.height - line)
     none = pygame.Rect(body.topleft, (0, 0))
@@ -276,15 +277,13 @@ def parts_of(control: Simple, rect: pygame.Rect, type_: Type) -> Parts:
 def _parts_of_choice(
     options: Sequence[Option], title: pygame.Rect, body: pygame.Rect, type_: Type
 ) -> Parts:
-    scale = type_.scale
     none = pygame.Rect(body.topleft, (0, 0))
-    dots = sum(option.colour is not None for option in options)
-    texts = [type_.width(option.title, BODY, bold=True) for option in options]
-    spare = body.width - sum(texts) - dots * round(15 * scale)
-    if spare >= len(options) * round(10 * scale):
-        each, x, rects = spare / len(options), float(body.left), []
-        for option, text in zip(options, texts, strict=True):
-            right = x + text + each + (round(15 * scale) if option.colour is not None else 0)
+    size = size_of_choice(options, body.width, type_)
+    if size is not None:
+        widths = _option_widths(options, size, type_)
+        each, x, rects = (body.width - sum(widths)) / len(options), float(body.left), []
+        for width in widths:
+            right = x + width + each
             rects.append(pygame.Rect(round(x), body.top, round(right) - round(x), body.height))
             x = right
         return Parts(title, none, body, options=tuple(rects))
@@ -293,6 +292,23 @@ def _parts_of_choice(
     more.right = body.right
     box = pygame.Rect(less.right, body.top, more.left - less.right, body.height)
     return Parts(title, none, box, arrows=(less, more))
+
+
+def size_of_choice(options: Sequence[Option], width: int, type_: Type) -> int | None:
+    """The size of type in which all options fit side by side; None: they don't."""
+    for size in (BODY, SMALL):
+        spare = width - sum(_option_widths(options, size, type_))
+        if spare >= len(options) * round(10 * type_.scale):
+            return size
+    return None
+
+
+def _option_widths(options: Sequence[Option], size: int, type_: Type) -> list[float]:
+    dot = round(15 * type_.scale)
+    return [
+        type_.width(option.title, size, bold=True) + (dot if option.colour is not None else 0)
+        for option in options
+    ]
 
 
 def slid_to(slider: Slider, parts: Parts, x: float) -> float:

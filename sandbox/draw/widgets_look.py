@@ -25,6 +25,7 @@ from sandbox.draw.widgets import (
     Switch,
     TextField,
     parts_of,
+    size_of_choice,
 )
 from sandbox.draw.widgets_scale import shown
 
@@ -110,7 +111,7 @@ def draw_control(painter: Painter, place: Place, attention: Attention) -> None:
             _draw_note(painter, control, rect)
     if control.name and attention.focus == control.name:
         grown = round(3 * painter.scale)
-        draw_ring(painter, rect.inflate(2 * grown, 0))
+        draw_ring(painter, rect.inflate(2 * grown, round(3 * painter.scale)))
 
 
 def _field(painter: Painter, rect: pygame.Rect, hover: bool, on: bool = False) -> None:
@@ -244,7 +245,9 @@ def _draw_choice(painter: Painter, choice: Choice, parts: Parts, hover: bool) ->
         text = type_.shortened(title, BODY, parts.box.width - round(10 * scale))
         painter.text(text, *parts.box.center, anchor="centre")
         return
-    _field(painter, _whole(parts.options), hover)
+    whole = _whole(parts.options)
+    _field(painter, whole, hover)
+    size = size_of_choice(choice.options, whole.width, type_) or SMALL
     for option, rect in zip(choice.options, parts.options, strict=True):
         on = option.value == choice.value
         if on:
@@ -252,12 +255,14 @@ def _draw_choice(painter: Painter, choice: Choice, parts: Parts, hover: bool) ->
         colour = theme.panel if on else theme.text
         x = float(rect.centerx)
         if option.colour is not None:
-            width = type_.width(option.title, BODY, bold=on)
+            width = type_.width(option.title, size, bold=on)
             place = x - 0.5 * (width + 3.0 * dot) + dot
             edge = colour if on else theme.panel
             painter.disc(place, rect.centery, dot, option.colour, edge=edge, edge_width=scale)
             x += 1.5 * dot
-        painter.text(option.title, x, rect.centery, bold=on, colour=colour, anchor="centre")
+        painter.text(
+            option.title, x, rect.centery, size=size, bold=on, colour=colour, anchor="centre"
+        )
 
 
 def _whole(rects: tuple[pygame.Rect, ...]) -> pygame.Rect:
@@ -282,8 +287,10 @@ def _draw_button(painter: Painter, button: Button, rect: pygame.Rect, hover: boo
     if button.title in SIGNS:
         draw_sign(painter, button.title, inner, colour)
         return
-    text = type_.shortened(button.title, BODY, inner.width - round(8 * painter.scale))
-    painter.text(text, *inner.center, colour=colour, anchor="centre", bold=button.on)
+    room = inner.width - round(8 * painter.scale)
+    size = BODY if type_.width(button.title, BODY, button.on) <= room else SMALL
+    text = type_.shortened(button.title, size, room, button.on)
+    painter.text(text, *inner.center, size=size, colour=colour, anchor="centre", bold=button.on)
 
 
 def _draw_heading(painter: Painter, heading: Heading, rect: pygame.Rect, hover: bool) -> None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from sandbox.draw.numbers import MINUS, nice_ceiling
+from sandbox.draw.words import decimal_sign
 
 MANY_DECADES = 50.0  # a range with such a ratio of its ends goes by its logarithm
 WIDE = 5.0  # a range from zero to at least this is finer near zero
@@ -81,7 +82,7 @@ class Range:
             wanted = self._rounded(value + way * step, least)
         if self.whole:
             least = max(least, 1.0)
-        if (wanted - value) * way < 0.5 * least:
+        if (self._within(wanted) - value) * way < 0.5 * least:
             wanted = float(f"{value + way * least:.12g}")
         return self._within(wanted)
 
@@ -95,14 +96,14 @@ class Range:
 
 
 def shown(value: float) -> str:
-    """A number as short as it can be told: 0.8, −0.35, 8000, 1e−8."""
+    """A number as short as it can be told, as the present language writes it: 0.8, −0.35, 8000, 1e−8."""
     if not math.isfinite(value):
         return "—"
     if value == int(value) and abs(value) < 1e7:
         return str(int(value)).replace("-", MINUS)
     mantissa, _, power = f"{value:.4g}".partition("e")
     text = f"{mantissa}e{int(power)}" if power else mantissa
-    return text.replace("-", MINUS)
+    return text.replace("-", MINUS).replace(".", decimal_sign())
 
 
 def typed(text: str) -> str:

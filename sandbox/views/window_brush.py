@@ -20,8 +20,8 @@ from sandbox.draw.widgets_scale import typed
 from sandbox.views.window_arrows import WAYS
 from sandbox.views.window_hand import REACH, handle_at
 from sandbox.views.window_keys import Action
-from sandbox.views.window_panel import Value
 from sandbox.views.window_parts import Silent
+from sandbox.views.window_sections import Value
 
 if TYPE_CHECKING:
     from sandbox.views.window import App

@@ -11,7 +11,7 @@ from sandbox.draw.theme import packing_colour
 from sandbox.draw.views import VIEWS
 from sandbox.draw.widgets import Button, Choice, Control, Option, Row, Stepper
 from sandbox.views.window_keys import Action
-from sandbox.views.window_panel import Value
+from sandbox.views.window_sections import Value
 from scenes import registry
 
 if TYPE_CHECKING:

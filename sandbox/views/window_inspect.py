@@ -21,8 +21,8 @@ from sandbox.frame import Frame
 from sandbox.inspection import Inspection, grain_at, inspect
 from sandbox.views.window_hand import REACH, handle_at
 from sandbox.views.window_keys import Action
-from sandbox.views.window_panel import Value
 from sandbox.views.window_parts import Silent
+from sandbox.views.window_sections import Value
 
 if TYPE_CHECKING:
     from sandbox.views.window import App

@@ -5,14 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.draw.layout import PANEL
 from sandbox.draw.painter import Painter
-from sandbox.draw.text import SMALL
-from sandbox.draw.theme import channels
 from sandbox.draw.widgets import (
     PAD,
     TARGET,
@@ -26,40 +23,22 @@ from sandbox.draw.widgets import (
     TextField,
     arranged,
     parts_of,
+    slid_to,
 )
-from sandbox.draw.widgets_look import Attention, draw_control
+from sandbox.draw.widgets_look import Attention
+from sandbox.draw.widgets_panel import foot_height, panel_picture
+from sandbox.views.window_drawer import Drawer
 from sandbox.views.window_edit import Edit
 from sandbox.views.window_keys import Action
 from sandbox.views.window_parts import Silent
 from sandbox.views.window_press import Press, keyed, pressed
+from sandbox.views.window_sections import Section, Value
 
 if TYPE_CHECKING:
     from sandbox.views.window import App
 
-Value = float | int | bool | str
-
 DOUBLE = 0.35  # two clicks within this are one double click [s]
 PAN = 8.0  # a press that moves this far scrolls, at scale 1 [px]
-FOOT_LINES = 3  # of help
-DRAWER = 0.92  # of the window's width, at most, for a panel that lies over the canvas
-
-
-class Section(Protocol):
-    """A part of the panel. Names of its controls begin with its own name and a slash."""
-
-    @property
-    def name(self) -> str:
-        """Tells it from all others."""
-
-    @property
-    def title(self) -> str:
-        """On its heading; empty: it has none and cannot be folded."""
-
-    def controls(self) -> Sequence[Control]:
-        """What there is at the moment; nothing: the section is not there."""
-
-    def use(self, name: str, value: Value, done: bool) -> None:
-        """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""
 
 
 @dataclass
@@ -78,8 +57,7 @@ class Panel(Silent):
         self.app = app
         self.sections: list[Section] = []
         self.folded = folded  # names of sections
-        self.hidden = False
-        self.drawer = False  # opened over the canvas, where there is no room beside it
+        self.drawer = Drawer(app)
         self.scroll = 0
         self.draft: Draft | None = None
         self.edit: Edit | None = None
@@ -96,36 +74,17 @@ class Panel(Silent):
     @property
     def rect(self) -> pygame.Rect:
         """Its place in the window [px]; of no width when it is not shown."""
-        own = self.app.renderer.layout.panel
-        if self.hidden and not self.drawer:
-            return pygame.Rect(own.topleft, (0, 0))
-        if own.width or not self.drawer:
-            return own
-        width, height = self.app.renderer.size
-        wide = round(min(PANEL * self.app.renderer.scale, DRAWER * width))
-        bottom = self.app.renderer.layout.status.top
-        return pygame.Rect(width - wide, 0, wide, bottom or height)
-
-    @property
-    def shown(self) -> bool:
-        """Can it be seen?"""
-        return self.rect.width > 0 and self.rect.height > 0
+        return self.drawer.rect
 
     def fold(self) -> None:
-        """Hide it or show it, over the canvas if there is no room beside it."""
-        if self.shown:
-            self.hidden, self.drawer = True, False
-        else:
-            self.hidden = False
-            self.app.arrange()
-            self.drawer = not self.app.renderer.layout.panel.width
-        self.app.arrange()
-        if not self.shown and not self.app.focus.on_canvas:
+        """Hide it or show it."""
+        self.drawer.switch()
+        if not self.drawer.shown and not self.app.focus.on_canvas:
             self.app.focus.leave()
 
     def stops(self) -> Sequence[str]:
         """What the keyboard can go to."""
-        return self._places.stops() if self.shown else ()
+        return self._places.stops() if self.drawer.shown else ()
 
     def place_of(self, name: str) -> pygame.Rect | None:
         """Where a control is in the window, whether scrolled into view or not."""
@@ -133,23 +92,16 @@ class Panel(Silent):
         return None if place is None else place.rect.move(self.rect.left, -self.scroll)
 
     @property
-    def _foot(self) -> int:
-        """Height of the help at the foot [px]; none in a low window."""
-        type_ = self.app.renderer.type
-        height = FOOT_LINES * type_.height(SMALL) + round(16 * type_.scale)
-        return height if self.rect.height > 4 * height else 0
-
-    @property
     def _view(self) -> int:
         """Height of what shows of the controls [px]."""
-        return self.rect.height - self._foot
+        return self.rect.height - foot_height(self.rect.height, self.app.renderer.type)
 
     # -- once a picture --
 
     def tick(self, now: float) -> bool:
         """Put the controls together anew; follow the keyboard."""
         del now
-        if not self.shown:
+        if not self.drawer.shown:
             self._places = Places((), 0)
             return False
         before = self._places
@@ -215,7 +167,7 @@ class Panel(Silent):
                 self._down(event.pos)
             elif not inside:
                 self._finish_edit()
-                if self.drawer and event.button == 1:
+                if self.drawer.over and event.button == 1:
                     self.fold()
             return inside
         if event.type == pygame.MOUSEBUTTONUP and self._press is not None:
@@ -292,9 +244,8 @@ class Panel(Silent):
         place = self._places.named(self.draft.name) if self.draft is not None else None
         if self.draft is None or place is None or not isinstance(place.control, Slider):
             return
-        track = parts_of(place.control, place.rect, self.app.renderer.type).track
-        share = (self._unscrolled(pos)[0] - track.left) / max(track.width, 1)
-        value = place.control.range.value(share)
+        parts = parts_of(place.control, place.rect, self.app.renderer.type)
+        value = slid_to(place.control, parts, self._unscrolled(pos)[0])
         if value != self.draft.value:
             self.draft.value = value
             self._use(self.draft.name, value, False)
@@ -331,7 +282,7 @@ class Panel(Silent):
     def _key(self, event: pygame.event.Event) -> bool:
         if self.edit is not None:
             return self._key_of_edit(event)
-        place = self._places.named(self.app.focus.name) if self.shown else None
+        place = self._places.named(self.app.focus.name) if self.drawer.shown else None
         if place is None:
             return False
         control = place.control
@@ -413,7 +364,7 @@ class Panel(Silent):
     def draw(self, painter: Painter) -> None:
         """All that is in view, from a picture that is kept as long as nothing has changed."""
         rect = self.rect
-        if not self.shown:
+        if not self.drawer.shown:
             return
         focus = self.app.focus
         edit = self.edit
@@ -424,58 +375,7 @@ class Panel(Silent):
             "" if edit is None else edit.text,
             0 if edit is None else edit.caret,
         )
-        key = (self._places, attention, self.scroll, rect.size, painter.theme, painter.type.scale)
-        if self._picture is None or self._picture[0] != key:
-            self._picture = (key, self._drawn(painter, attention))
+        look = self._places, self.scroll, attention, painter.theme, painter.type
+        if self._picture is None or self._picture[0] != (rect.size, *look):
+            self._picture = (rect.size, *look), panel_picture(rect.size, *look)
         painter.picture(self._picture[1], rect.topleft)
-
-    def _drawn(self, painter: Painter, attention: Attention) -> pygame.Surface:
-        theme, type_, rect = painter.theme, painter.type, self.rect
-        whole = pygame.Surface(rect.size, 0, 32)
-        whole.fill(channels(theme.panel))
-        view = pygame.Surface((rect.width, max(self._view, 1)), 0, 32)
-        view.fill(channels(theme.panel))
-        inside = Painter(view, theme, type_)
-        for place in self._places.all:
-            moved = place.rect.move(0, -self.scroll)
-            if moved.bottom > 0 and moved.top < self._view:
-                draw_control(inside, Place(place.control, moved), attention)
-        self._draw_scroll_bar(inside)
-        inside.flush()
-        whole.blit(view, (0, 0))
-        around = Painter(whole, theme, type_)
-        thin = max(round(type_.scale), 1)
-        around.fill(pygame.Rect(0, 0, thin, rect.height), theme.hairline)
-        if self._foot:
-            self._draw_foot(around, pygame.Rect(0, self._view, rect.width, self._foot), attention)
-        around.flush()
-        return whole
-
-    def _draw_scroll_bar(self, painter: Painter) -> None:
-        if self._places.height <= self._view:
-            return
-        width = max(round(4 * painter.scale), 3)
-        length = max(self._view * self._view // self._places.height, 3 * width)
-        travel = self._view - length
-        top = travel * self.scroll // (self._places.height - self._view)
-        bar = pygame.Rect(self.rect.width - width - 2, top, width, length)
-        painter.box(bar, painter.theme.soft_text, radius=0.5 * width)
-
-    def _draw_foot(self, painter: Painter, rect: pygame.Rect, attention: Attention) -> None:
-        """What the control under the mouse or the keyboard is about."""
-        type_, pad = painter.type, round(PAD * painter.scale)
-        thin = max(round(painter.scale), 1)
-        painter.fill(pygame.Rect(rect.left, rect.top, rect.width, thin), painter.theme.hairline)
-        place = self._places.named(attention.hover or attention.focus)
-        if place is None:
-            return
-        lines = type_.wrapped(place.control.help, SMALL, rect.width - 2 * pad)
-        if len(lines) > FOOT_LINES:
-            rest = lines[FOOT_LINES - 1] + " …"
-            lines = [
-                *lines[: FOOT_LINES - 1],
-                type_.shortened(rest, SMALL, rect.width - 2 * pad),
-            ]
-        for index, line in enumerate(lines):
-            y = rect.top + pad // 2 + round((index + 0.5) * type_.height(SMALL))
-            painter.text(line, rect.left + pad, y, size=SMALL)

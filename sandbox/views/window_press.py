@@ -19,8 +19,7 @@ from sandbox.draw.widgets import (
     TextField,
     neighbour,
 )
-
-Value = float | int | bool | str
+from sandbox.views.window_sections import Value
 
 LESS = (pygame.K_LEFT, pygame.K_DOWN)
 MORE = (pygame.K_RIGHT, pygame.K_UP)

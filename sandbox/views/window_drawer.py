@@ -1,0 +1,45 @@
+"""Where the panel is: beside the canvas, over it where there is no room, or folded away."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pygame
+
+from sandbox.draw.layout import PANEL
+
+if TYPE_CHECKING:
+    from sandbox.views.window import App
+
+WIDEST = 0.92  # of the window's width, for a panel that lies over the canvas
+
+
+class Drawer:
+    """The panel's place, which K opens and shuts."""
+
+    def __init__(self, app: App) -> None:
+        self.app = app
+        self.folded = False
+        self.over = False  # opened over the canvas
+
+    @property
+    def rect(self) -> pygame.Rect:
+        """Where it is in the window [px]; of no width when it is not to be seen."""
+        own = self.app.renderer.layout.panel
+        if own.width or not self.over:
+            return own
+        width, _ = self.app.renderer.size
+        wide = round(min(PANEL * self.app.renderer.scale, WIDEST * width))
+        return pygame.Rect(width - wide, 0, wide, self.app.renderer.layout.status.top)
+
+    @property
+    def shown(self) -> bool:
+        """Can it be seen?"""
+        return self.rect.width > 0 and self.rect.height > 0
+
+    def switch(self) -> None:
+        """Fold it away, or open it: over the canvas if there is no room beside it."""
+        opened = not self.shown
+        self.folded, self.over = not opened, False
+        self.app.arrange()
+        self.over = opened and not self.app.renderer.layout.panel.width

@@ -1,0 +1,28 @@
+"""What the panel is put together from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from sandbox.draw.widgets import Control
+
+Value = float | int | bool | str
+
+
+class Section(Protocol):
+    """A part of the panel. Names of its controls begin with its own name and a slash."""
+
+    @property
+    def name(self) -> str:
+        """Tells it from all others."""
+
+    @property
+    def title(self) -> str:
+        """On its heading; empty: it has none and cannot be folded."""
+
+    def controls(self) -> Sequence[Control]:
+        """What there is at the moment; nothing: the section is not there."""
+
+    def use(self, name: str, value: Value, done: bool) -> None:
+        """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""
