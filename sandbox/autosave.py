@@ -115,7 +115,7 @@ class Autosave:
         """The end. A clean one takes the autosave away; any other writes the newest state and leaves it."""
         self._stop.set()
         self._thread.join(PATIENCE)
-        if not clean:
+        if not clean and self._newest is not None:
             with contextlib.suppress(OSError):
                 self.write()
             self._lock.release()

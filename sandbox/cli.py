@@ -21,6 +21,7 @@ from sandbox.exit_codes import DIFFERENT, INTERRUPTED, OK, USER_MISTAKE
 from sandbox.studies import commands as studies
 
 if TYPE_CHECKING:
+    from sandbox.scene_file import SceneFile
     from sandbox.session import Session
     from sandbox.views.record import Outcome, Output
 
@@ -89,7 +90,12 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     listing.add_argument("--json", action="store_true", help="print the same as JSON")
 
     play = command("play", _play, "Open a window; grab a handle with the mouse and move it.")
-    play.add_argument("scene", nargs="?", metavar="SCENE", help="without it: a menu of scenes")
+    play.add_argument(
+        "scene",
+        nargs="?",
+        metavar="SCENE",
+        help="name of a scene, or a scene file FILE.toml; without it: a menu",
+    )
     _add_scene_options(play)
     play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
     _add_size(play)
@@ -102,7 +108,11 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     _add_look(play, "that of this computer, if there is a choice")
 
     record = command("record", _record, "Run a scene by itself, and write a film, a table or both.")
-    record.add_argument("scene", metavar="SCENE", help="one of the names that `list` prints")
+    record.add_argument(
+        "scene",
+        metavar="SCENE",
+        help="one of the names that `list` prints, or a scene file FILE.toml",
+    )
     record.add_argument(
         "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"
     )
@@ -167,14 +177,12 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
 def _add_scene_options(parser: Parser) -> None:
     parser.add_argument(
         "--packing",
-        default="mixed",
         metavar="NAME",
         help="kinds of grains: regular, auxetic or mixed (default)",
     )
     parser.add_argument(
         "--seed",
         type=argument(arguments.whole_number(0, arguments.LARGEST_SEED)),
-        default=1,
         metavar="N",
         help="of the random packing (default: 1)",
     )
@@ -252,18 +260,21 @@ def _play(options: argparse.Namespace) -> int:
     if options.scene is None:
         if options.set:
             raise InputError("--set needs a scene: write play SCENE --set NAME=VALUE")
-        _check_packing_of_some_scene(options.packing)
+        _check_packing_of_some_scene(_packing(options))
         settings: dict[str, object] = {}
+        scene: str | SceneFile | None = None
     else:
-        settings = dict(_session(options).settings)
+        session = _session(options)
+        settings = dict(session.settings)
+        scene = session.file or session.scene.name
     environment.require_pygame_ce()
     environment.require_display()
     from sandbox.views import window
 
     return window.run(
-        options.scene,
-        options.packing,
-        options.seed,
+        scene,
+        _packing(options),
+        _seed(options),
         settings,
         log=log,
         size=options.size,
@@ -365,8 +376,23 @@ def _session(options: argparse.Namespace) -> Session:
     """The session that the options describe, checked but not built."""
     from sandbox.session import Session
 
+    if options.scene.lower().endswith(".toml"):
+        for name, value in (("packing", options.packing), ("seed", options.seed)):
+            if value is not None:
+                raise InputError(f"--{name}: a scene file brings its own; leave this out")
+        if options.set:
+            raise InputError("--set: a scene file brings its own settings; write them there")
+        return Session.from_file(options.scene)
     settings = arguments.assignments(options.set)
-    return Session(options.scene, options.packing, options.seed, settings)
+    return Session(options.scene, _packing(options), _seed(options), settings)
+
+
+def _packing(options: argparse.Namespace) -> str:
+    return "mixed" if options.packing is None else str(options.packing)
+
+
+def _seed(options: argparse.Namespace) -> int:
+    return 1 if options.seed is None else int(options.seed)
 
 
 def _check_packing_of_some_scene(name: str) -> None:

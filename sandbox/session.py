@@ -289,6 +289,11 @@ class Session:
         """Hash of every bit of the state."""
         return self.run.state_hash()
 
+    @property
+    def file(self) -> SceneFile | None:
+        """What the scene was read from, if it was."""
+        return self._file
+
     def made(self) -> Made:
         """What there is to be kept in a file; quick, as it shares the checkpoint that is kept anyway."""
         kept = self.run.settled

@@ -26,6 +26,7 @@ class Action(enum.Enum):
     HELP = enum.auto()
     THEME = enum.auto()
     LANGUAGE = enum.auto()
+    TOUR = enum.auto()
     LARGER = enum.auto()
     SMALLER = enum.auto()
     SCREENSHOT = enum.auto()
@@ -46,7 +47,10 @@ class Action(enum.Enum):
     FASTER = enum.auto()
     COMPARE = enum.auto()
     RECORD = enum.auto()
+    RECORD_GIF = enum.auto()
+    SOUND = enum.auto()
     EXPORT = enum.auto()
+    SAVE = enum.auto()
 
 
 PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
@@ -68,6 +72,7 @@ _SIGNS = {
     "?": Action.HELP,
     "t": Action.THEME,
     "l": Action.LANGUAGE,
+    "y": Action.TOUR,
     "+": Action.LARGER,
     "=": Action.LARGER,
     "-": Action.SMALLER,
@@ -82,7 +87,10 @@ _SIGNS = {
     ".": Action.FASTER,
     "c": Action.COMPARE,
     "g": Action.RECORD,
+    "G": Action.RECORD_GIF,
+    "o": Action.SOUND,
     "e": Action.EXPORT,
+    "w": Action.SAVE,
 }
 
 _KEYS = {
@@ -99,7 +107,8 @@ _KEYS = {
     pygame.K_KP_MINUS: Action.SMALLER,
 }
 
-_COMMANDS = {pygame.K_z: Action.UNDO, pygame.K_y: Action.REDO}  # with Ctrl
+# With Ctrl.
+_COMMANDS = {pygame.K_z: Action.UNDO, pygame.K_y: Action.REDO, pygame.K_s: Action.SAVE}
 _BRACKETS = ("[", "]")
 
 
@@ -107,13 +116,14 @@ def action_of(event: pygame.event.Event) -> Action | None:
     """What a KEYDOWN event asks for, if anything."""
     if event.key in _KEYS:
         return _KEYS[event.key]
-    mod = getattr(event, "mod", 0)
+    mod, sign = getattr(event, "mod", 0), getattr(event, "unicode", "")
     if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and event.key in _COMMANDS:
-        return Action.REDO if mod & pygame.KMOD_SHIFT else _COMMANDS[event.key]
+        again = event.key == pygame.K_z and mod & pygame.KMOD_SHIFT
+        return Action.REDO if again else _COMMANDS[event.key]
     if mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META):
         # AltGr, with which many keyboards write brackets, may come as Ctrl and Alt.
-        return _SIGNS.get(getattr(event, "unicode", "")) if event.unicode in _BRACKETS else None
-    sign = getattr(event, "unicode", "") or (chr(event.key) if 0 < event.key < 128 else "")
+        return _SIGNS[sign] if sign in _BRACKETS else None
+    sign = sign or (chr(event.key) if 0 < event.key < 128 else "")
     return _SIGNS.get(sign) or _SIGNS.get(sign.lower())
 
 
