@@ -68,6 +68,7 @@ class Renderer:
         self.cameras: tuple[Camera, ...] = (
             Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0),
         )
+        self.bodies = [self.layout.canvas]  # what of each canvas the grains have
         self.forget()
 
     @property
@@ -144,7 +145,7 @@ class Renderer:
             self.arrange(**{**self._wanted, "panes": len(panes)})
         shown = [frame for frame in panes if frame is not None]
         painter = self.painter()
-        bodies = self._canvases(painter, panes)
+        self.bodies = bodies = self._canvases(painter, panes)
         bounds = [(frame or shown[0]).bounds for frame in panes]
         views = list(zip(bounds, bodies, strict=True))
         self.cameras = Camera.fit_all(views, MARGIN * self.scale)

@@ -29,6 +29,8 @@ __all__ = [
     "Section",
     "about",
     "decimal_sign",
+    "first_sentence",
+    "has_tour",
     "help_groups",
     "parameter_help",
     "parameter_name",
@@ -110,6 +112,17 @@ def unit(unit: str) -> str:
     """A unit as it is written: signs stay, "deg" and "diameters" are words."""
     found = language.find("units", unit)
     return unit if found is None else str(found)
+
+
+def first_sentence(text: str) -> str:
+    """The beginning of a text, to its first full stop."""
+    head, stop, _ = text.partition(". ")
+    return f"{head}." if stop else text
+
+
+def has_tour(scene: str) -> bool:
+    """Is there a guided tour of a scene?"""
+    return language.find("tours", scene) is not None
 
 
 def help_groups() -> list[tuple[str, list[tuple[str, str]]]]:

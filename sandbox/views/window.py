@@ -3,29 +3,30 @@
 from __future__ import annotations
 
 import contextlib
-import math
 import os
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import pygame
 
 from core.errors import InputError
-from sandbox import language
+from sandbox import autosave, language
+from sandbox.autosave import Leftover
 from sandbox.commands import Change, Command
 from sandbox.draw import words
-from sandbox.draw.camera import Camera
-from sandbox.draw.cards import MenuEntry, draw_error
+from sandbox.draw.cards import draw_error
+from sandbox.draw.menu_layout import KEYS, LANGUAGE, THEME
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
 from sandbox.draw.views import view_after
 from sandbox.draw.warmup import Warmup
-from sandbox.frame import Frame
+from sandbox.scene_file import SceneFile
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_arrows import Arrows
 from sandbox.views.window_brush import Brush
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
+from sandbox.views.window_export import export, free_stem
 from sandbox.views.window_focus import Focus
 from sandbox.views.window_general import GeneralSection
 from sandbox.views.window_hand import REACH, Mouse
@@ -35,10 +36,12 @@ from sandbox.views.window_keys import Action, action_of, packing_for
 from sandbox.views.window_menu import Choice, Menu
 from sandbox.views.window_panel import Panel
 from sandbox.views.window_parts import Part
+from sandbox.views.window_picture import Pane, Picture, progress_of
+from sandbox.views.window_record import Recorder
 from sandbox.views.window_run import Run
 from sandbox.views.window_settings import ParameterSection, Settings
+from sandbox.views.window_sound import Sound
 from sandbox.views.window_timeline import Timeline
-from scenes import registry
 from scenes.text import message
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
@@ -49,7 +52,7 @@ SCALES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
 
 
 def run(
-    scene: str | None,
+    scene: str | SceneFile | None,
     packing: str = "mixed",
     seed: int = 1,
     settings: Mapping[str, object] | None = None,
@@ -59,25 +62,33 @@ def run(
     scale: float | None = None,
     theme: str = "dark",
     view: str = "kind",
+    packings: Sequence[str] = (),
 ) -> int:
-    """Open the window and stay until it is closed. Without a scene it starts with the menu.
+    """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
-    ``scale`` None: by the screen's size. ``log``: where the log of the last scene started is
-    written at the end. Raises InputError without a display and for what does not exist.
+    ``packings``: side by side, if any are named. ``scale`` None: by the screen's size. ``log``: where the log of the last
+    scene started is written at the end. Raises InputError without a display and for what does not exist.
     """
     sys.setswitchinterval(SWITCH)
-    app = App(Run(packing, seed), size=size, scale=scale, theme=theme, view=view)
+    own = Run(packing, seed, autosave=autosave.begin())
+    app = App(own, size=size, scale=scale, theme=theme, view=view)
+    clean = False
     try:
         if scene is None:
             app.open_menu()
+        elif isinstance(scene, SceneFile):
+            app.open(scene)
         else:
-            app.start(scene, settings)
+            app.start(scene, settings, packings)
         while app.running:
             app.tick()
+        clean = True
     except KeyboardInterrupt:
-        pass
+        clean = True
     finally:
-        ended = app.close(log)
+        ended = app.close(log, clean)
+    if app.farewell:
+        sys.stdout.write(f"{app.farewell}\n")
     if not ended:
         # A thread is still compiling. That cannot be broken off, and when the interpreter ends
         # under it, LLVM aborts: leave at once. Nothing was built, so there is nothing to save.
@@ -107,10 +118,10 @@ class App:
         self.mouse = Mouse()
         self.screen = open_display(size)
         self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
-        scenes = [registry.get(name) for name in registry.names()]
-        entries = [MenuEntry(s.name, s.title, s.question, s.about) for s in scenes]
-        packings = dict.fromkeys(packing for s in scenes for packing in s.packings)
-        self.menu = Menu(entries, tuple(packings))
+        self.picture = Picture(run, self.renderer)
+        self.recorder = Recorder()
+        self.sound = Sound()
+        self.menu = Menu()
         self.focus = Focus(self.handle)
         self.settings = Settings(self)
         self.timeline = Timeline(self)
@@ -133,11 +144,13 @@ class App:
         ]
         self.arrange()
         self._toasts: list[tuple[float, str]] = []
+        self.farewell = ""  # what is left to say when the window is closed
         self._hinted = False  # has a person found out how to begin?
         self._dirty = True  # is there something new to draw?
         self._splash = True  # is that what the window shows?
         self._drawn = 0.0
-        self._serial = -1
+        self._serials: tuple[int, ...] = ()
+        self._held_in = 0  # the pane in which the mouse holds something
         self._cursor: int | None = None
         self._rate = Rate()
         self._clock = pygame.time.Clock()
@@ -145,41 +158,76 @@ class App:
         self._warmup = Warmup()
         self._warmup.start()
 
-    def start(self, scene: str, settings: Mapping[str, object] | None = None) -> None:
-        """Run a scene. Raises InputError for one that does not exist."""
-        self.run.start(scene, settings)
+    def start(
+        self,
+        scene: str,
+        settings: Mapping[str, object] | None = None,
+        packings: Sequence[str] = (),
+    ) -> None:
+        """Run a scene, with these packings side by side if any are named. Raises InputError for what does not exist."""
+        self.run.start(scene, settings, packings)
+        self._begin()
+
+    def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
+        """Go on where a scene file was written. Raises InputError for one that cannot be read."""
+        self.run.open(file)
+        self._begin()
+
+    def take_up(self, leftover: Leftover) -> None:
+        """Go on where a program that is gone had to stop. Raises InputError if that cannot be."""
+        self.run.take_up(leftover)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Something else runs now."""
+        self.picture.forget()
         self.mouse = Mouse()
         self.focus.leave()
         self.brush.on = False
         self.renderer.forget()
-        self.menu.choose(scene)
+        self.menu.choose(self.run.scene)
         self.show_menu = self.show_help = False
         self._dirty = True
 
-    def close(self, log: str | os.PathLike[str] | None = None) -> bool:
-        """Close the window, end the threads, write the log; False if one is still compiling."""
+    def save(self) -> None:
+        """Write what there is down as a scene file in the current folder, under a name that is still free."""
+        name = free_stem(f"sandbox-{self.run.scene}", (".toml", ".npz")) + ".toml"
+        try:
+            self.run.save(name)
+        except InputError as error:
+            self.toast(words.say(message(error)))
+        else:
+            self.toast(words.SAVED.format(name=name))
+
+    def close(self, log: str | os.PathLike[str] | None = None, clean: bool = True) -> bool:
+        """Close the window, end the threads, write the log; False if one is still compiling.
+
+        A ``clean`` end needs no autosave.
+        """
         self.running = False
         self.mouse.release(self.send)
+        self.sound.close()
+        self.farewell = self.recorder.close()
         pygame.display.quit()
-        ended = self.run.close(log)
+        ended = self.run.close(log, clean)
         return self._warmup.join(PATIENCE) and ended
 
     def send(self, command: Command) -> None:
-        """A command to the solver."""
-        self.run.send(command)
+        """A command to the solvers."""
+        try:
+            self.run.send(command)
+        except InputError as error:
+            self.toast(words.say(message(error)))
         self._dirty = True
 
     def arrange(self) -> None:
         """Divide the window anew: the panel may have been folded."""
-        self.renderer.arrange(panel=not self.panel.hidden, timeline=True)
+        self.renderer.arrange(panel=not self.panel.drawer.folded, timeline=True)
         self._dirty = True
 
-    def panes(self) -> tuple[tuple[Frame, Camera, pygame.Rect], ...]:
+    def panes(self) -> tuple[Pane, ...]:
         """What is drawn where, from the left."""
-        frame = self.run.snapshot.frame
-        return (
-            () if frame is None else ((frame, self.renderer.camera, self.renderer.layout.canvas),)
-        )
+        return self.picture.panes()
 
     def redraw(self, changed: bool) -> None:
         """Draw the next picture if something has changed."""
@@ -199,16 +247,21 @@ class App:
             return
         self.mouse.send_move(self.send)
         now = time.perf_counter()
+        self.run.tick()
         snapshot = self.run.snapshot
-        if snapshot.serial != self._serial:
-            self._serial = snapshot.serial
+        serials = self.picture.serials
+        if serials != self._serials:
+            self._serials = serials
             self._dirty = True
         if self._toasts and self._toasts[0][0] < now:
             self._toasts = [toast for toast in self._toasts if toast[0] >= now]
             self._dirty = True
         for part in self._parts():
             self._dirty |= part.tick(now)
-        moving = self._splash or snapshot.phase == "building" or self.mouse.holding
+        if said := self.recorder.tick(self.renderer.surface, now):
+            self.toast(said)
+        self._dirty |= self.recorder.second_passed(now)
+        moving = self._splash or self.picture.moving or self.mouse.holding
         if self._dirty or moving or now - self._drawn >= REST:
             self._draw(snapshot, now)
         self._show_cursor()
@@ -233,23 +286,23 @@ class App:
         elif self.show_menu:
             notice = self._toasts[-1][1] if self._toasts else ""
             self.menu.draw(self.renderer.painter(), self.run.packing, notice)
+            if self.show_help:
+                self.help.draw(self.renderer.painter())
         else:
-            self._draw_run(snapshot)
+            self._draw_run(snapshot, now)
         self.screen.blit(self.renderer.surface, (0, 0))
+        self._draw_indicator()
         pygame.display.flip()
         self._rate.drew(time.perf_counter() - begun)
 
-    def _draw_run(self, snapshot: Snapshot) -> None:
+    def _draw_run(self, snapshot: Snapshot, now: float) -> None:
         if snapshot.frame is None:
             self.renderer.clear()
         else:
-            self.renderer.draw(
-                snapshot.frame,
-                hand=self.mouse.hand,
-                rate=self._rate.text,
-                paused=self.run.paused,
-                notices=self._notices(snapshot),
+            self.picture.draw(
+                hand=self.mouse.hand, rate=self._rate.text, notices=self._notices(snapshot), now=now
             )
+            self.sound.play(self.picture.events)
         painter = self.renderer.painter()
         for part in self._parts():
             part.draw(painter)
@@ -259,20 +312,24 @@ class App:
         if self.show_help:
             self.help.draw(self.renderer.painter())
 
+    def _draw_indicator(self) -> None:
+        """On the screen only, so that it is not in the film."""
+        last, inset = self.renderer.bodies[-1], round(10 * self.renderer.scale)
+        corner = last.right - inset, last.top + inset
+        self.recorder.draw(self.screen, corner, self.renderer.theme, self.renderer.type)
+
     def _notices(self, snapshot: Snapshot) -> tuple[str, ...]:
         notices = [text for _, text in self._toasts]
-        if snapshot.phase == "building":
-            text = _sentence(words.say(snapshot.text) or words.SPLASH_STEP)
-            if math.isfinite(snapshot.fraction):
-                text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
-            notices.append(text)
+        progress = "" if self.run.comparing else progress_of(snapshot)
+        if progress:
+            notices.append(progress)
         elif not self._hinted and not notices:
             notices.append(words.HINT)
         return tuple(notices)
 
     def _show_cursor(self) -> None:
         wanted = pygame.SYSTEM_CURSOR_ARROW
-        if self.show_menu:
+        if self.show_menu and not self.show_help:
             wanted = self.menu.cursor()
         elif not self.show_help:
             own = (part.cursor() for part in self._parts())
@@ -297,21 +354,23 @@ class App:
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):
             self.screen = pygame.display.get_surface() or self.screen
             self.renderer.resize(self.screen.get_size())
-        elif any(part.handle(event) for part in self._parts()):
+        elif any(part.handle(event) for part in self._parts()) or (
+            self.show_menu and not self.show_help and self.menu.handle(event)
+        ):
             pass
         elif event.type == pygame.KEYDOWN:
             action = action_of(event)
             if action is not None:
                 self.act(action)
         elif event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-            if self.show_menu:
-                self._mouse_in_menu(event)
-            elif self.show_help:
+            if self.show_help:
                 self.show_help = event.type != pygame.MOUSEBUTTONDOWN
+            elif self.show_menu:
+                self._mouse_in_menu(event)
             else:
                 self._mouse_on_canvas(event)
         elif event.type == pygame.MOUSEWHEEL and (self.show_menu or self.show_help):
-            page = self.menu if self.show_menu else self.help
+            page = self.help if self.show_help else self.menu
             page.wheel(event.precise_y, round(60 * self.renderer.scale))
         elif event.type == pygame.WINDOWFOCUSLOST:
             self.mouse.release(self.send)
@@ -326,12 +385,14 @@ class App:
             self._choose(self.menu.click(event.pos))
 
     def _mouse_on_canvas(self, event: pygame.event.Event) -> None:
-        snapshot = self.run.snapshot
-        frame, camera, canvas = snapshot.frame, self.renderer.camera, self.renderer.layout.canvas
-        reach = REACH * self.renderer.scale
-        if frame is None or snapshot.phase == "failed":
+        panes, reach = self.panes(), REACH * self.renderer.scale
+        if not panes or self.run.snapshot.phase == "failed":
             self.mouse.forget()
-        elif event.type == pygame.MOUSEMOTION:
+            return
+        there = self.picture.pane_at(event.pos)
+        index = self._held_in if self.mouse.holding or there is None else there
+        frame, camera, canvas = panes[min(index, len(panes) - 1)]
+        if event.type == pygame.MOUSEMOTION:
             self.mouse.move(event.pos, camera, canvas)
             if not self.mouse.holding:
                 self.mouse.look(event.pos, frame, camera, reach)
@@ -341,9 +402,8 @@ class App:
             self.mouse.move(event.pos, camera, canvas)
             self.mouse.release(self.send)
             self.mouse.look(event.pos, frame, camera, reach)
-        elif canvas.collidepoint(event.pos) and self.mouse.press(
-            event.pos, frame, camera, reach, self.send
-        ):
+        elif there is not None and self.mouse.press(event.pos, frame, camera, reach, self.send):
+            self._held_in = there
             self._hinted = True
 
     def act(self, action: Action) -> None:
@@ -353,19 +413,30 @@ class App:
             self.toast(save_picture(self.renderer.surface, f"sandbox{name}"))
         elif action is Action.THEME:
             self.renderer.set_theme("light" if self.renderer.theme.name == "dark" else "dark")
+        elif action is Action.SOUND:
+            self._switch_sound()
+        elif action in (Action.RECORD, Action.RECORD_GIF):
+            suffix = ".mp4" if action is Action.RECORD else ".gif"
+            scene = self.run.scene or "menu"
+            self.toast(self.recorder.switch(scene, self.renderer.size, suffix))
         elif action is Action.LANGUAGE:
             self._speak(language.after(language.present()))
         elif action in (Action.LARGER, Action.SMALLER):
             self._rescale(1 if action is Action.LARGER else -1)
-        elif self.show_menu:
-            self._act_in_menu(action)
         elif action is Action.HELP or (action is Action.BACK and self.show_help):
             self.show_help = not self.show_help
             self.help.scroll = 0
-        elif self.show_help and self.help.act(action, round(60 * self.renderer.scale)):
-            pass
+        elif self.show_help and (
+            self.help.act(action, round(60 * self.renderer.scale)) or self.show_menu
+        ):
+            pass  # the page is on top of the menu
+        elif self.show_menu:
+            self._act_in_menu(action)
         elif action in (Action.MENU, Action.BACK):
-            self.open_menu()
+            if action is Action.BACK and any(progress_of(seen) for seen in self.run.snapshots):
+                self._cancel()
+            else:
+                self.open_menu()
         elif self.run.snapshot.phase == "failed":
             if action is Action.RESET:
                 self.run.reset()
@@ -390,6 +461,8 @@ class App:
             return
         if action is Action.PAUSE:
             self.run.pause_or_go_on()
+        elif action is Action.SAVE:
+            self.save()
         elif action is Action.STEP:
             self.run.step()
         elif action is Action.RESET:
@@ -406,6 +479,11 @@ class App:
             self.toast(words.DRIVE_OFF if frame.protocol else words.DRIVE_ON)
         elif action is Action.NEW_SEED:
             self.change_seed(None)
+        elif action is Action.COMPARE:
+            self.compare()
+        elif action is Action.EXPORT and frame is not None:
+            frames = [pane[0] for pane in self.panes()]
+            self.toast(export(frames, self.run.curves.shown(frame)))
         elif (packing := self._packing(action)) is not None:
             self.change_packing(packing)
 
@@ -425,10 +503,25 @@ class App:
 
     def change_packing(self, packing: str) -> None:
         """Pack other grains, if they are others."""
-        if packing != self.run.packing:
+        if self.run.comparing:
+            self.toast(words.COMPARE_ALL)
+        elif packing != self.run.packing:
             self.forget_picture()
             self.run.change_packing(packing)
             self.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(packing, packing)))
+
+    def compare(self) -> None:
+        """All packings of the scene side by side, or one alone again."""
+        self.mouse.release(self.send)
+        self.toast(self.run.compare())
+        self.picture.forget()
+
+    def _cancel(self) -> None:
+        """Break off what is being built."""
+        self.mouse.forget()
+        if not self.run.cancel():
+            self.open_menu()
+        self.toast(words.CANCELLED)
 
     def _switch_chains(self) -> None:
         if self.renderer.view.only_chains:
@@ -452,11 +545,18 @@ class App:
         self.mouse.release(self.send)
         self.run.hold()
         self.show_menu, self.show_help = True, False
+        self.menu.open(self.run.scene if self.run.exists else "")
         self._dirty = True
 
     def _choose(self, choice: Choice) -> None:
         if choice.packing is not None:
             self.run.packing = choice.packing
+        if choice.what == LANGUAGE:
+            self.act(Action.LANGUAGE)
+        elif choice.what == THEME:
+            self.act(Action.THEME)
+        elif choice.what == KEYS:
+            self.show_help = True
         if choice.scene is not None:
             try:
                 self.start(choice.scene)
@@ -467,6 +567,12 @@ class App:
         language.use(code)
         pygame.display.set_caption(words.SPLASH_TITLE)
         self.toast(words.NEW_LANGUAGE.format(language=language.find("name")))
+
+    def _switch_sound(self) -> None:
+        if not self.sound.switch():
+            self.toast(words.NO_SOUND)
+        else:
+            self.toast(words.SOUND_ON if self.sound.on else words.SOUND_OFF)
 
     def forget_picture(self) -> None:
         """The scene is to be built anew: nothing is held, the scales begin afresh."""
