@@ -41,6 +41,7 @@ class FakeSession:
             raise InputError("no scene is called 'unknown'")
         self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
         self.changed: dict[str, Scalar] = {}  # parameters
+        self.refused: set[str] = set()  # parameters that it will not change
         self.last_kept = 0  # increments that can be gone back to
         self.commands: list[Command] = []  # in the order in which they took effect
         self.built = 0
@@ -113,7 +114,7 @@ class FakeSession:
             case Change("seed", value):
                 self.seed = int(value)
                 self.built += 1
-            case Change(name, value):
+            case Change(name, value) if name not in self.refused:
                 self.changed[name] = value
             case Recall(increment):
                 self.increments = increment
