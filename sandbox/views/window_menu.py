@@ -1,128 +1,206 @@
-"""The scene menu's state: which card is chosen, how far the cards are scrolled."""
+"""The scene menu's state: what is chosen, how far it is scrolled, and what a person picks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import pygame
 
-from sandbox.draw.cards import MenuEntry, MenuLayout, draw_menu
+from sandbox import language
+from sandbox.draw import menu_layout, words
+from sandbox.draw.menu_layout import (
+    DISCARD,
+    FILE,
+    KEYS,
+    LANGUAGE,
+    PACKING,
+    SCENE,
+    START,
+    TAKE_UP,
+    THEME,
+    TOUR,
+    Card,
+    Chip,
+    Contents,
+    MenuLayout,
+)
+from sandbox.draw.menu_page import draw_menu
 from sandbox.draw.painter import Painter
+from sandbox.scenes_here import SceneHere, scenes_here
 from sandbox.views.window_keys import Action
+from scenes import registry
+
+ARROWS = {
+    Action.LEFT: (-1, 0),
+    Action.RIGHT: (1, 0),
+    Action.UP: (0, -1),
+    Action.DOWN: (0, 1),
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What a person picked: a scene, or a packing."""
+    """What a person picked: at most one of these. ``what`` is START, TAKE_UP, DISCARD, LANGUAGE, THEME or KEYS."""
 
     scene: str | None = None
     packing: str | None = None
+    tour: str | None = None  # of that scene
+    file: Path | None = None
+    what: str = ""
 
 
 class Menu:
-    """All scenes as cards; keyboard and mouse."""
+    """All there is to begin with; keyboard and mouse."""
 
-    def __init__(self, entries: Sequence[MenuEntry], packings: Sequence[str]) -> None:
-        self.entries = tuple(entries)
-        self.packings = tuple(packings)
-        self.chosen = 0
+    def __init__(self) -> None:
+        self.scenes = [registry.get(name) for name in registry.names()]
+        kinds = dict.fromkeys(packing for scene in self.scenes for packing in scene.packings)
+        self.packings = tuple(kinds)
+        self.chosen = START
         self.scroll = 0
-        self._clickable = False  # is the mouse over something that can be clicked?
+        self.resume = ""  # what was left unfinished, as it is told; nothing if nothing was
+        self._files: tuple[SceneHere, ...] = ()
         self._places: MenuLayout | None = None
+        self._pointed = ""  # what the mouse is over
+        self._follow = False  # bring what is chosen into view with the next picture
+
+    def open(self, scene: str, folder: Path | None = None) -> None:
+        """The menu is shown: look for files, and put the choice on the scene that runs, if one does."""
+        self._files = scenes_here(folder or Path.cwd())
+        if scene:
+            self.choose(scene)
+        elif self.resume:
+            self._go(TAKE_UP)
 
     def choose(self, scene: str) -> None:
         """Put the choice on a scene."""
-        names = [entry.name for entry in self.entries]
-        if scene in names:
-            self.chosen = names.index(scene)
+        if scene in registry.names():
+            self._go(SCENE + scene)
+
+    def contents(self, packing: str, theme: str) -> Contents:
+        """What the menu offers, in the present language."""
+        cards = [
+            Card(
+                SCENE + scene.name,
+                words.title(scene.name, scene.title),
+                words.question(scene.name, scene.question),
+                words.first_sentence(words.about(scene.name, scene.about)),
+                scene.name,
+                words.has_tour(scene.name),
+            )
+            for scene in self.scenes
+        ]
+        cards += [
+            Card(
+                FILE + str(file.path),
+                file.path.stem,
+                words.MENU_FILE.format(name=file.path.name),
+                words.MENU_FILE_FROM.format(scene=words.title(file.scene) or file.scene),
+                file.scene,
+            )
+            for file in self._files
+        ]
+        chips = [
+            Chip(PACKING + name, words.PACKINGS.get(name, name), name == packing)
+            for name in self.packings
+        ]
+        chips += [
+            Chip(LANGUAGE, str(language.find("name"))),
+            Chip(THEME, words.DARK if theme == "dark" else words.LIGHT),
+            Chip(KEYS, words.HELP_TITLE),
+        ]
+        return Contents(tuple(cards), tuple(chips), self.resume)
+
+    # -- what a person does --
+
+    def handle(self, event: pygame.event.Event) -> bool:
+        """Tab goes on, with Shift back; True if the key was that."""
+        if event.type != pygame.KEYDOWN or event.key != pygame.K_TAB:
+            return False
+        stops = self._places.stops() if self._places is not None else []
+        if stops:
+            way = -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1
+            here = stops.index(self.chosen) if self.chosen in stops else -way
+            self._go(stops[(here + way) % len(stops)])
+        return True
 
     def key(self, action: Action) -> Choice:
         """Arrows move the choice, Enter takes it."""
-        if not self.entries:
-            return Choice()
-        columns = self._columns()
-        moves = {
-            Action.LEFT: -1,
-            Action.RIGHT: 1,
-            Action.UP: -columns,
-            Action.DOWN: columns,
-        }
-        if action in moves:
-            wanted = self.chosen + moves[action]
-            if 0 <= wanted < len(self.entries):
-                self.chosen = wanted
-            self._follow()
+        if action in ARROWS and self._places is not None:
+            self._go(self._places.neighbour(self.chosen, ARROWS[action]))
         elif action in (Action.ENTER, Action.PAUSE):
-            return Choice(scene=self.entries[self.chosen].name)
+            return self._taken(self.chosen)
+        elif action is Action.TOUR:
+            return Choice(tour=self.chosen.removeprefix(SCENE)) if self._tour_here() else Choice()
         return Choice()
 
     def hover(self, place: tuple[int, int]) -> None:
         """The mouse is there."""
-        index = self._card_at(place)
-        if index is not None:
-            self.chosen = index
-        self._clickable = index is not None or self._chip_at(place) is not None
+        self._pointed = self._at(place)
+        if self._pointed and not self._pointed.startswith(TOUR):
+            self.chosen = self._pointed
 
     def cursor(self) -> int:
         """The system cursor for where the mouse is."""
-        return pygame.SYSTEM_CURSOR_HAND if self._clickable else pygame.SYSTEM_CURSOR_ARROW
+        return pygame.SYSTEM_CURSOR_HAND if self._pointed else pygame.SYSTEM_CURSOR_ARROW
 
     def click(self, place: tuple[int, int]) -> Choice:
         """The mouse was pressed there."""
-        index = self._card_at(place)
-        if index is not None:
-            self.chosen = index
-            return Choice(scene=self.entries[index].name)
-        chip = self._chip_at(place)
-        return Choice(packing=None if chip is None else self.packings[chip])
+        name = self._at(place)
+        if name and not name.startswith(TOUR):
+            self.chosen = name
+        return self._taken(name)
 
     def wheel(self, notches: float, step: int) -> None:
         """Scroll by notches of ``step`` pixels."""
         if self._places is not None:
-            most = max(self._places.content - self._places.view.height, 0)
-            self.scroll = max(0, min(round(self.scroll - notches * step), most))
+            wanted = round(self.scroll - notches * step)
+            self.scroll = max(0, min(wanted, self._places.most_scroll))
 
     def draw(self, painter: Painter, packing: str, notice: str) -> None:
         """Draw the whole page."""
+        contents = self.contents(packing, painter.theme.name)
         self._places = draw_menu(
-            painter,
-            self.entries,
-            self.packings,
-            chosen=self.chosen,
-            packing=packing,
-            scroll=self.scroll,
-            notice=notice,
+            painter, contents, chosen=self.chosen, scroll=self.scroll, notice=notice
         )
+        wanted = min(self.scroll, self._places.most_scroll)
+        if self._follow:
+            self._follow = False
+            wanted = self._places.scroll_to(self.chosen, self.scroll)
+        if wanted != self.scroll:
+            self.scroll = wanted
+            draw_menu(painter, contents, chosen=self.chosen, scroll=self.scroll, notice=notice)
 
-    def place_of(self, scene: str) -> pygame.Rect | None:
-        """Where a scene's card was drawn."""
-        names = [entry.name for entry in self.entries]
-        if self._places is None or scene not in names:
-            return None
-        return self._places.cards[names.index(scene)].move(0, -self.scroll)
-
-    def _columns(self) -> int:
-        if self._places is None or not self._places.cards:
-            return 1
-        top = self._places.cards[0].top
-        return sum(card.top == top for card in self._places.cards)
-
-    def _follow(self) -> None:
-        if self._places is not None:
-            self.scroll = self._places.scroll_to(self.chosen, self.scroll)
-
-    def _card_at(self, place: tuple[int, int]) -> int | None:
-        if self._places is None or not self._places.view.collidepoint(place):
-            return None
-        x, y = place
-        for index, card in enumerate(self._places.cards):
-            if card.collidepoint(x, y + self.scroll):
-                return index
-        return None
-
-    def _chip_at(self, place: tuple[int, int]) -> int | None:
+    def place_of(self, name: str) -> pygame.Rect | None:
+        """Where something was drawn, by its name; scenes also by theirs alone."""
         if self._places is None:
             return None
-        index = pygame.Rect(place, (1, 1)).collidelist(list(self._places.chips))
-        return None if index < 0 else index
+        shown = self._places.shown(name, self.scroll)
+        return self._places.shown(SCENE + name, self.scroll) if shown is None else shown
+
+    def _go(self, name: str) -> None:
+        self.chosen = name
+        self._follow = True
+
+    def _at(self, place: tuple[int, int]) -> str:
+        return "" if self._places is None else self._places.at(place, self.scroll)
+
+    def _tour_here(self) -> bool:
+        scene = self.chosen.removeprefix(SCENE)
+        return self.chosen.startswith(SCENE) and words.has_tour(scene)
+
+    @staticmethod
+    def _taken(name: str) -> Choice:
+        """What the name of something pressed means."""
+        kind, _, rest = name.partition("/")
+        match kind + "/":
+            case menu_layout.SCENE:
+                return Choice(scene=rest)
+            case menu_layout.FILE:
+                return Choice(file=Path(rest))
+            case menu_layout.TOUR:
+                return Choice(tour=rest)
+            case menu_layout.PACKING:
+                return Choice(packing=rest)
+        return Choice(what=name if name in (START, TAKE_UP, DISCARD, LANGUAGE, THEME, KEYS) else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -11,9 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sandbox.draw.camera import Camera
-from sandbox.draw.cards import MenuEntry, draw_error, draw_menu, menu_layout
+from sandbox.draw.cards import draw_error
 from sandbox.draw.help_page import draw_help
 from sandbox.draw.layout import SEAM, layout
+from sandbox.draw.menu_layout import SCENE, Card, Chip, Contents, menu_layout
+from sandbox.draw.menu_page import draw_menu
 from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
@@ -38,10 +41,20 @@ FRAMES = {
         notices=("a notice that goes on and on and will not stop before the window's edge " * 2,),
     ),
 }
-ENTRIES = [
-    MenuEntry(f"s{index}", f"Scene {index}", "What happens, and why? " * 3, "It says so. " * 9)
+CARDS = [
+    Card(
+        f"{SCENE}s{index}",
+        f"Scene {index}",
+        "What happens, and why? " * 3,
+        "It says so. " * 9,
+        "hopper",
+        index % 2 == 0,
+    )
     for index in range(9)
 ]
+CHIPS = tuple(
+    Chip(name, name) for name in ("regular", "auxetic", "mixed", "language", "theme", "keys")
+)
 
 
 @given(
@@ -117,11 +130,10 @@ def test_pages_fit_the_window(
     painter = Renderer(size, scale).painter()
     window = pygame.Rect((0, 0), size)
     if page == "menu":
-        packings = ("regular", "auxetic", "mixed")
-        places = draw_menu(painter, ENTRIES, packings, chosen=4, packing="mixed", scroll=0)
-        seen = [(text, place) for text, place in texts if place.bottom <= places.view.bottom]
-        check(seen, window)
-        for first, second in combinations((places.title, *places.chips), 2):
+        contents = Contents(tuple(CARDS), CHIPS, "Something was left unfinished, a minute ago.")
+        places = draw_menu(painter, contents, chosen=CARDS[4].name, scroll=0)
+        check(texts, window)
+        for first, second in combinations((places.title, *places.chips.values()), 2):
             assert not first.colliderect(second)
     elif page == "help":
         assert window.contains(draw_help(painter).card)
@@ -149,15 +161,35 @@ def test_splash_draws_at_any_size(size: tuple[int, int], scale: float) -> None:
 
 @settings(max_examples=30, deadline=None)
 @given(size=sizes, scale=scales, count=st.integers(1, 12))
-def test_any_card_can_be_scrolled_into_view(
+def test_anything_in_the_menu_can_be_scrolled_into_view(
     size: tuple[int, int], scale: float, count: int
 ) -> None:
     type_ = Type(min(scale, size[0] / 480, size[1] / 360))
-    places = menu_layout(size, type_, ENTRIES[:1] * count, ("regular", "auxetic"))
+    cards = tuple(replace(CARDS[0], name=f"{SCENE}{index}") for index in range(count))
+    places = menu_layout(size, type_, Contents(cards, CHIPS, "Something was left unfinished."))
     scroll = 0
-    for index in [*range(count), *reversed(range(count))]:
-        scroll = places.scroll_to(index, scroll)
-        assert places.view.contains(places.cards[index].move(0, -scroll))
+    for name in [*places.scrolled, *reversed(places.scrolled)]:
+        scroll = places.scroll_to(name, scroll)
+        shown = places.shown(name, scroll)
+        assert shown is not None
+        assert places.view.contains(shown)
+
+
+@settings(max_examples=30, deadline=None)
+@given(size=sizes, scale=scales, resume=st.booleans())
+def test_arrows_reach_everything_in_the_menu(
+    size: tuple[int, int], scale: float, resume: bool
+) -> None:
+    type_ = Type(min(scale, size[0] / 480, size[1] / 360))
+    left = "Something was left unfinished." if resume else ""
+    places = menu_layout(size, type_, Contents(tuple(CARDS), CHIPS, left))
+    reached, waiting = set(), [places.stops()[0]]
+    while waiting:
+        here = waiting.pop()
+        reached.add(here)
+        ways = ((1, 0), (-1, 0), (0, 1), (0, -1))
+        waiting += [there for way in ways if (there := places.neighbour(here, way)) not in reached]
+    assert reached == set(places.stops())
 
 
 @given(

@@ -14,11 +14,13 @@ import pygame
 import pytest
 
 from core.errors import InputError
+from sandbox import language
 from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
 from sandbox.draw import words
 from sandbox.views import window_display
 from sandbox.views.window import App
 from sandbox.views.window_run import Run
+from scenes import registry
 from tests.views.fake_session import FakeSession
 
 
@@ -227,13 +229,47 @@ def test_menu_by_keyboard(desk: Desk) -> None:
     desk.app.open_menu()
     desk.until(lambda: not desk.app._splash)
     desk.app.tick()
-    names = [entry.name for entry in desk.app.menu.entries]
+    assert desk.app.menu.chosen == "start"
     desk.key(pygame.K_2)
+    desk.key(pygame.K_DOWN)
+    desk.key(pygame.K_TAB)
+    desk.post(pygame.KEYDOWN, key=pygame.K_TAB, unicode="", mod=pygame.KMOD_LSHIFT)
     desk.key(pygame.K_RIGHT)
+    names = registry.names()
+    assert desk.app.menu.chosen == f"scene/{names[1]}"
     desk.key(pygame.K_RETURN)
     desk.until(lambda: desk.app.run.snapshot.phase == "running")
     assert (desk.session.scene, desk.session.packing) == (names[1], "auxetic")
     assert desk.page() == "run"
+
+
+def test_tab_goes_through_the_whole_menu_and_shows_it(running: Desk) -> None:
+    running.key(pygame.K_m)
+    first = running.app.menu.chosen
+    seen: list[str] = []
+    while not seen or running.app.menu.chosen != first:
+        running.key(pygame.K_TAB)
+        seen.append(running.app.menu.chosen)
+        place = running.app.menu.place_of(seen[-1])
+        assert place is not None
+        assert running.app.screen.get_rect().contains(place)
+    assert {name.partition("/")[0] for name in seen} >= {"start", "scene", "packing", "language"}
+    assert len(seen) == len(set(seen)) >= len(registry.names()) + 5
+
+
+def test_chips_of_the_menu_switch_theme_language_and_open_the_keys(running: Desk) -> None:
+    menu = running.app.menu
+    running.key(pygame.K_m)
+    for chip, expected in (("theme", "light"), ("language", "de"), ("keys", "help")):
+        place = menu.place_of(chip)
+        assert place is not None
+        running.press(place.center)
+        now = (running.app.renderer.theme.name, language.present())
+        assert expected in (*now, "help" if running.app.show_help else "")
+    running.key(pygame.K_ESCAPE)
+    running.key(pygame.K_l)
+    assert (running.page(), running.app.show_help) == ("menu", False)
+    assert language.present() == "en"
 
 
 def test_menu_by_mouse_and_back(running: Desk) -> None:
@@ -245,9 +281,9 @@ def test_menu_by_mouse_and_back(running: Desk) -> None:
     assert running.page() == "run"
     assert not running.paused()
     running.key(pygame.K_ESCAPE)
-    for _ in running.app.menu.entries:
+    for _ in registry.names():
         running.key(pygame.K_UP)
-    first = running.app.menu.entries[0].name
+    first = registry.names()[0]
     place = running.app.menu.place_of(first)
     assert place is not None
     running.point(place.center)
@@ -255,6 +291,21 @@ def test_menu_by_mouse_and_back(running: Desk) -> None:
     running.press(place.center)
     running.until(lambda: running.app.run.snapshot.phase == "running")
     assert [session.scene for session in running.sessions] == ["intruder", first]
+
+
+def test_scene_files_of_the_folder_are_in_the_menu(
+    running: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = 'format = "auxetic-sandbox scene"\nscene = "hopper"\n'
+    (tmp_path / "my bridge.toml").write_text(head, encoding="utf-8")
+    (tmp_path / "pyproject.toml").write_text('name = "no scene"\n', encoding="utf-8")
+    (tmp_path / "broken.toml").write_bytes(b"\xff = [")
+    monkeypatch.chdir(tmp_path)
+    running.key(pygame.K_m)
+    files = [
+        card for card in running.app.menu.contents("mixed", "dark").cards if "file/" in card.name
+    ]
+    assert [(card.title, card.picture) for card in files] == [("my bridge", "hopper")]
 
 
 def test_packing_looked_at_in_the_menu_only_is_forgotten(running: Desk) -> None:
