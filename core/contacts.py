@@ -44,23 +44,24 @@ def prepare(p, q1, q2, s, u, v, fx, fy, a, b, d):
 
 
 @kernel(noalias=True)
-def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
-    """Add the contacts of one slot; return their energy. ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,).
+def slot_forces(neighbor, stiffness, xs, ys, ss, us, vs, x, y, s, u, v, fx, fy, a, b, d, box):
+    """Add the contacts of n grains in one slot; return their energy.
 
+    ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,). xs … vs and fx … d (n,) are of these grains, x … v (N,) of all.
     Where two centres coincide the direction is undefined: the pair then has an energy but no force, and nothing becomes nan.
     """
     energy = 0.0
     for i in range(neighbor.shape[0]):
         j = neighbor[i]
-        dx = x[j] - x[i]
-        dy = y[j] - y[i]
+        dx = x[j] - xs[i]
+        dy = y[j] - ys[i]
         if box is not None:
             rows = np.rint(dy * box[3])
             dx -= rows * box[4]
             dy -= rows * box[2]
             dx -= box[0] * np.rint(dx * box[1])
-        ui = u[i]
-        vi = v[i]
+        ui = us[i]
+        vi = vs[i]
         uj = u[j]
         vj = v[j]
         # Roots and divisions set the pace: three of the one, two of the other, as few as possible after another.
@@ -70,7 +71,7 @@ def slot_forces(neighbor, stiffness, x, y, s, u, v, fx, fy, a, b, d, box):
         inverse = r * inverse2
         c2 = (dx * dx - dy * dy) * inverse2
         s2 = 2.0 * dx * dy * inverse2
-        hi = math.sqrt(s[i] + ui * c2 + vi * s2)
+        hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
         hj = math.sqrt(s[j] + uj * c2 + vj * s2)
         both = 1.0 / (hi * hj)
         inverse_hi = hj * both
@@ -117,27 +118,32 @@ def slot_force_sum(neighbor, stiffness, x, y, s, u, v, box):
 
 
 @kernel
-def add_contact_forces(state, support, force, count, offset, neighbor, stiffness, box):
-    """Add all grain–grain contacts to ``force``; return their energy [k R²]."""
+def add_contact_forces(begin, end, state, support, force, width, offset, neighbor, stiffness, box):
+    """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²]."""
     energy = 0.0
-    for t in range(count.shape[0]):
-        n = count[t]
-        if n == 0:
+    for t in range(width.shape[0]):
+        last = min(width[t], end)
+        if last <= begin:
             break
         first = offset[t]
         energy += slot_forces(
-            neighbor[first : first + n],
-            stiffness[first : first + n],
+            neighbor[first + begin : first + last],
+            stiffness[first + begin : first + last],
+            state[0, begin:last],
+            state[1, begin:last],
+            support[0, begin:last],
+            support[1, begin:last],
+            support[2, begin:last],
             state[0],
             state[1],
             support[0],
             support[1],
             support[2],
-            force[0],
-            force[1],
-            force[2],
-            force[3],
-            force[4],
+            force[0, begin:last],
+            force[1, begin:last],
+            force[2, begin:last],
+            force[3, begin:last],
+            force[4, begin:last],
             box,
         )
     return energy

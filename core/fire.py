@@ -19,12 +19,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.contacts import add_contact_forces, prepare, slot_force_sum
-from core.elasticity import add_guard, finish
+from core import sweeps, threads
+from core.contacts import prepare, slot_force_sum
 from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
+from core.sweeps import CHUNK, add, collapsed, drift, farthest, largest, permute
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
 
@@ -105,81 +106,6 @@ class Limits(NamedTuple):
     skin: float  # [R]
 
 
-@kernel(noalias=True)
-def kick(velocity, force, inverse_mass, keep, push):
-    """v ← keep v + push F/m."""
-    for i in range(velocity.shape[0]):
-        velocity[i] = keep * velocity[i] + push * force[i] * inverse_mass[i]
-
-
-@kernel(noalias=True)
-def drift(state, velocity, dt):
-    """x ← x + dt v."""
-    for i in range(state.shape[0]):
-        state[i] += dt * velocity[i]
-
-
-@kernel
-def largest(bits):
-    """max |value| from the bits (n,) int64 of float64: integers order as the numbers do, nan above all, and vectorise."""
-    most = np.int64(0)
-    for i in range(bits.shape[0]):
-        magnitude = bits[i] & np.int64(0x7FFFFFFFFFFFFFFF)
-        most = max(most, magnitude)
-    return most
-
-
-@kernel(noalias=True)
-def second_kick(velocity, force, inverse_mass, half_dt):
-    """v ← v + dt/2 F/m. Returns (F·v, Σ F²/m, Σ m v²)."""
-    power = 0.0
-    force_square = 0.0
-    speed_square = 0.0
-    for i in range(velocity.shape[0]):
-        f = force[i]
-        weighted = f * inverse_mass[i]
-        v = velocity[i] + half_dt * weighted
-        velocity[i] = v
-        power += f * v
-        force_square += f * weighted
-        speed_square += v * v / inverse_mass[i]
-    return power, force_square, speed_square
-
-
-@kernel
-def farthest(state, reference):
-    """Upper bound of what any grain has moved plus grown since the lists were built [R]."""
-    most = 0.0
-    for i in range(state.shape[1]):
-        dx = state[0, i] - reference[0, i]
-        dy = state[1, i] - reference[1, i]
-        dp = state[2, i] - reference[2, i]
-        d1 = state[3, i] - reference[3, i]
-        d2 = state[4, i] - reference[4, i]
-        moved = math.sqrt(dx * dx + dy * dy) + abs(dp) + math.sqrt(d1 * d1 + d2 * d2)
-        if not moved <= most:
-            most = moved
-    return most
-
-
-@kernel
-def collapsed(state):
-    """True if some grain's shorter semi-axis is not greater than 0 (also when it is nan)."""
-    flat = False
-    for i in range(state.shape[1]):
-        flat |= not state[2, i] > math.sqrt(state[3, i] ** 2 + state[4, i] ** 2)
-    return flat
-
-
-@kernel
-def permute(values, order, scratch):
-    """values ← values[order], in place."""
-    for i in range(order.shape[0]):
-        scratch[i] = values[order[i]]
-    for i in range(order.shape[0]):
-        values[i] = scratch[i]
-
-
 @kernel
 def relist(m, box, rigid, friction, skin):
     """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
@@ -225,50 +151,68 @@ def add_weight(x, y, rest_area, identity, fx, fy, weight):
 
 
 @kernel
-def evaluate(m, box, rigid, friction, gravity):
-    """Forces of every term that the scene has, into ``force``; returns the energy [k R²]."""
-    state = m.state
-    force = m.force
-    prepare(
-        state[2],
-        state[3],
-        state[4],
-        m.support[0],
-        m.support[1],
-        m.support[2],
-        force[0],
-        force[1],
-        force[2],
-        force[3],
-        force[4],
-    )
-    energy = add_contact_forces(
-        state,
-        m.support,
-        force,
-        m.lists.width,
-        m.lists.offset,
-        m.lists.neighbor,
-        m.lists.stiffness,
-        box,
-    )
+def evaluate(m, box, rigid, friction, gravity, shared):
+    """Forces of every term that the scene has, into ``force``; returns the energy [k R²].
+
+    Several threads have prepared for it when they moved the grains.
+    """
+    state, support, force = m.state, m.support, m.force
+    lists, grains = m.lists, m.grains
+    if shared is None:
+        prepare(
+            state[2],
+            state[3],
+            state[4],
+            support[0],
+            support[1],
+            support[2],
+            force[0],
+            force[1],
+            force[2],
+            force[3],
+            force[4],
+        )
+    energy = 0.0
     if rigid is not None:
-        energy += add_rigid_forces(state, m.support, m.grains.contact_stiffness, force, rigid, box)
+        energy += add_rigid_forces(state, support, grains.contact_stiffness, force, rigid, box)
     if gravity is not None:
         energy += add_weight(
-            state[0], state[1], m.grains.rest_area, m.identity, force[0], force[1], gravity
+            state[0], state[1], grains.rest_area, m.identity, force[0], force[1], gravity
         )
     if friction is not None:
         force[5] = 0.0
         energy += add_friction_forces(state, force, friction)
-    grains = m.grains
-    p, q1, q2, fp, fq1, fq2 = state[2], state[3], state[4], force[2], force[3], force[4]
-    own, small = finish(
-        p, q1, q2, grains.rest_area, grains.area_stiffness, grains.shape_stiffness, fp, fq1, fq2
-    )
-    if small > 0.0:
-        own += add_guard(p, q1, q2, grains.rest_area, fp, fq1, fq2)
-    return energy + own
+    # Last, since it turns the contact sums into forces.
+    if shared is None:
+        own = sweeps.all_forces(
+            state,
+            support,
+            force,
+            lists.width,
+            lists.offset,
+            lists.neighbor,
+            lists.stiffness,
+            grains.rest_area,
+            grains.area_stiffness,
+            grains.shape_stiffness,
+            box,
+        )
+    else:
+        own = threads.all_forces(
+            state,
+            support,
+            force,
+            lists.width,
+            lists.offset,
+            lists.neighbor,
+            lists.stiffness,
+            grains.rest_area,
+            grains.area_stiffness,
+            grains.shape_stiffness,
+            box,
+            shared.sums,
+        )
+    return add(energy, own)
 
 
 @kernel
@@ -311,10 +255,11 @@ def mean_contact_force(m, box, rigid):
 
 
 @kernel
-def run(m, box, rigid, friction, gravity, limits, max_iterations):
+def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
     """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE call ``relist``.
 
-    ``box``, ``rigid``, ``friction`` and ``gravity`` are None where the scene has no such term; then no code for it exists.
+    ``box``, ``rigid``, ``friction`` and ``gravity`` are None where the scene has no such term, ``shared`` where one thread does
+    it all; then no code for it exists.
     """
     control = m.control
     bits = control.view(np.int64)
@@ -322,14 +267,23 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations):
     velocity = m.velocity.reshape(-1)
     force = m.force.reshape(-1)
     inverse_mass = m.inverse_mass.reshape(-1)
+    chunk = CHUNK * m.state.shape[0]
     for iteration in range(max_iterations):
         dt = control[DT]
         if control[PENDING] == 0.0:
-            kick(velocity, force, inverse_mass, control[KEEP], control[PUSH])
-            bits[FASTEST] = largest(velocity.view(np.int64))
+            keep, push = control[KEEP], control[PUSH]
+            if shared is None:
+                bits[FASTEST] = sweeps.first_kick(velocity, force, inverse_mass, keep, push, chunk)
+            else:
+                bits[FASTEST] = threads.first_kick(
+                    velocity, force, inverse_mass, keep, push, chunk, shared.most
+                )
             fastest = control[FASTEST]
             step = dt if fastest * dt <= limits.clamp else limits.clamp / fastest
-            drift(state, velocity, step)
+            if shared is None:
+                drift(state, velocity, step)
+            else:
+                threads.move(m.state, m.velocity, step, m.support, m.force)
             # 4 × the largest change of any degree of freedom bounds displacement plus growth of one grain.
             control[MOVED] += 4.0 * step * fastest
             if not control[MOVED] <= 0.5 * limits.skin:
@@ -339,12 +293,21 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations):
         if control[LISTED] == 0.0:
             control[PENDING] = 1.0  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
+        if shared is not None and control[PENDING] != 0.0:
+            threads.move(m.state, m.velocity, 0.0, m.support, m.force)
         control[PENDING] = 0.0
-        control[ENERGY] = evaluate(m, box, rigid, friction, gravity)
+        control[ENERGY] = evaluate(m, box, rigid, friction, gravity, shared)
         if np.isnan(control[START_ENERGY]):
             control[START_ENERGY] = control[ENERGY]
-        power, force_square, speed_square = second_kick(velocity, force, inverse_mass, 0.5 * dt)
-        bits[FASTEST] = largest(force.view(np.int64))
+        if shared is None:
+            power, force_square, speed_square, most = sweeps.last_kick(
+                velocity, force, inverse_mass, 0.5 * dt, chunk
+            )
+        else:
+            power, force_square, speed_square, most = threads.last_kick(
+                velocity, force, inverse_mass, 0.5 * dt, chunk, shared.sums, shared.most
+            )
+        bits[FASTEST] = most
         largest_force = control[FASTEST]
         # Not isfinite: it is compiled to v - v == 0, which the licence to reorder sums turns into "true" for a sum.
         if not abs(power + force_square + speed_square + control[ENERGY]) < np.inf:

@@ -47,6 +47,7 @@ class Settings:
     force_floor: float = DEFAULT_FORCE_FLOOR
     skin: float = DEFAULT_SKIN
     max_iterations: int = 8_000
+    threads: int = 1
 
     def __post_init__(self) -> None:
         if not 0.0 < self.step <= LONGEST_STEP:
@@ -204,6 +205,7 @@ class Quasistatic:
             force_floor=settings.force_floor,
             skin=settings.skin,
             max_iterations=settings.max_iterations,
+            threads=settings.threads,
         )
 
     def relax(self, max_iterations: int) -> Increment | None:

@@ -13,6 +13,8 @@ from core.errors import InputError
 from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
 from core.material import area_modulus, deformation_stiffness, shape_modulus
 from core.packing import Packing
+from core.sweeps import collapsed
+from core.threads import running, share
 
 DEFAULT_TOLERANCE = 1e-2
 DEFAULT_FORCE_FLOOR = 1e-3
@@ -70,8 +72,12 @@ class Relaxation:
         force_floor: float = DEFAULT_FORCE_FLOOR,
         skin: float = DEFAULT_SKIN,
         max_iterations: int = 20_000,
+        threads: int = 1,
     ) -> None:
-        """Raises InputError if the tolerance is not positive or the periodic box is too small for its grains."""
+        """Raises InputError if the tolerance is not positive or the periodic box is too small for its grains.
+
+        Results do not depend on ``threads`` by a bit; more than one pays from some thousand grains on.
+        """
         if not tolerance > 0.0 or not force_floor > 0.0:
             raise InputError("the tolerance and the force floor must be greater than 0")
         self.packing = packing
@@ -97,6 +103,8 @@ class Relaxation:
             start = packing.state[:2].copy()
             self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
         self._minimizer = _minimizer(packing, friction is not None)
+        self.threads = threads
+        self._shared = share(threads, count)
         stiffest = float(packing.contact_stiffness.max()) if count else 1.0
         if friction is not None:
             stiffest *= 1.0 + TANGENTIAL_STIFFNESS
@@ -122,6 +130,11 @@ class Relaxation:
 
     def run(self, max_iterations: int) -> Report:
         """Go on for at most ``max_iterations`` force evaluations; the GIL is free meanwhile."""
+        with running(self.threads):
+            self._run(max_iterations)
+        return self.report()
+
+    def _run(self, max_iterations: int) -> None:
         left = min(max_iterations, self.max_iterations - self.iterations)
         while self._reason is StopReason.BUDGET and left > 0:
             code, used = fire.run(
@@ -132,6 +145,7 @@ class Relaxation:
                 self._weight,
                 self._limits,
                 left,
+                self._shared,
             )
             self.iterations += used
             left -= used
@@ -140,9 +154,8 @@ class Relaxation:
             else:
                 self._reason = _REASONS[code]
         if self._reason is StopReason.BUDGET and self.iterations >= self.max_iterations:
-            flat = fire.collapsed(self._minimizer.state)
+            flat = collapsed(self._minimizer.state)
             self._reason = StopReason.COLLAPSED if flat else StopReason.ITERATION_LIMIT
-        return self.report()
 
     def report(self) -> Report:
         """How it stands now."""

@@ -53,6 +53,8 @@ def compile_kernels(
         contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
         lists = m.lists
         contacts.add_contact_forces(
+            0,
+            rows.shape[1],
             m.state,
             m.support,
             rows,
@@ -67,7 +69,7 @@ def compile_kernels(
         (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
         (0.10, lambda: fire.relist(m, form, body, terms, 0.1)),
         (0.15, forces),
-        (0.15, lambda: fire.evaluate(m, form, body, terms, weight)),
+        (0.15, lambda: fire.evaluate(m, form, body, terms, weight, None)),
         (0.10, lambda: fire.mean_contact_force(m, form, body)),
         (0.22, lambda: relaxation.run(10)),
         (0.08, lambda: observables.grain_contacts(packing)),

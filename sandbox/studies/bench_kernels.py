@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core import contacts, elasticity, fire
+from core import contacts, elasticity, fire, sweeps
 from core.generate import Recipe, pack
 from core.jit import kernel
 from core.relaxation import Relaxation
@@ -75,7 +75,16 @@ def repeat_pairs(times, m, box):
             force[4],
         )
         energy = contacts.add_contact_forces(
-            state, support, force, lists.width, lists.offset, lists.neighbor, lists.stiffness, box
+            0,
+            state.shape[1],
+            state,
+            support,
+            force,
+            lists.width,
+            lists.offset,
+            lists.neighbor,
+            lists.stiffness,
+            box,
         )
     return energy
 
@@ -85,7 +94,7 @@ def repeat_forces(times, m, box):
     """All forces of a packing without bodies, several times, for the clock."""
     energy = 0.0
     for _ in range(times):
-        energy = fire.evaluate(m, box, None, None, None)
+        energy = fire.evaluate(m, box, None, None, None, None)
     return energy
 
 
@@ -94,14 +103,15 @@ def repeat_updates(times, m):
     """What FIRE does besides forces, on a copy, several times, for the clock; dt is 0, so that nothing moves."""
     state, velocity = m.state.reshape(-1), m.velocity.reshape(-1)
     force, inverse_mass = m.force.reshape(-1), m.inverse_mass.reshape(-1)
+    chunk = sweeps.CHUNK * m.state.shape[0]
     total = 0.0
     for _ in range(times):
-        fire.kick(velocity, force, inverse_mass, 0.9, 0.0)
-        total += fire.largest(velocity.view(np.int64))
-        fire.drift(state, velocity, 0.0)
-        power, force_square, speed_square = fire.second_kick(velocity, force, inverse_mass, 0.0)
-        total += power + force_square + speed_square
-        total += fire.largest(force.view(np.int64))
+        total += sweeps.first_kick(velocity, force, inverse_mass, 0.9, 0.0, chunk)
+        sweeps.drift(state, velocity, 0.0)
+        power, force_square, speed_square, most = sweeps.last_kick(
+            velocity, force, inverse_mass, 0.0, chunk
+        )
+        total += power + force_square + speed_square + most
     return total
 
 

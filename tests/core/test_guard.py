@@ -75,7 +75,7 @@ def test_squeezed_beyond_what_the_area_bears_a_grain_does_not_vanish() -> None:
     for value in p:
         minimizer.state[2] = value
         relaxation._relist()
-        total.append(float(fire.evaluate(minimizer, None, None, None, None)) + 2.0 * value)
+        total.append(float(fire.evaluate(minimizer, None, None, None, None, None)) + 2.0 * value)
     energy = np.array(total)
     lowest = int(np.argmin(energy))
     assert 0.1 < p[lowest] < math.sqrt(GUARD_AREA)

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core import fire
 from core.errors import InputError
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation, Report, StopReason
+from core.sweeps import collapsed
 from tests.core import examples
 
 
@@ -133,7 +133,7 @@ def test_flat_on_the_way_is_pushed_back() -> None:
     minimizer = relaxation._minimizer
     flat = 0
     while relaxation.run(1).reason is StopReason.BUDGET:
-        flat += bool(fire.collapsed(minimizer.state))
+        flat += bool(collapsed(minimizer.state))
     assert flat > 0
     assert relaxation.report().reason is StopReason.CONVERGED
     relaxation.write_back()
