@@ -21,6 +21,7 @@ class Course:
     stroke: float = 0.0  # [R], or what the scene plots instead
     out: int = 0  # grains that have left
     last_exit: tuple[float, float] = (0.0, 0.0)  # stroke and force when a grain last left
+    waited: float = 0.0  # stroke between that and the exit before
     moving: bool = False  # the grains go on by themselves
     touched: bool = False  # something was changed: relax once where things stand
     edited: bool = False  # grains or walls are no longer those that the scene came with

@@ -58,7 +58,7 @@ class Run:
         self._course = Course(self._drive.direction, len(setup.packing))
         self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
-        self._before_edit: Checkpoint | None = None  # where to go back to if it was too tight
+        self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
         self.engine.begin({})
         last: Increment | None = None
         while last is None:
@@ -121,7 +121,7 @@ class Run:
     def edit(self, command: Edit) -> None:
         """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
         made = edited(self.setup, self.values, command, self._course.next_label)
-        before = self._before_edit or self.present()
+        before = self._before_edit or (self.present(), self._course.copy())
         course, friction = self._course, self.engine.friction
         if friction is not None:
             friction.rearrange(made.source)
@@ -190,7 +190,9 @@ class Run:
         follow_drive(self._course, self.setup, increment)
         self._record(increment)
         if left:
-            self._course.last_exit = self.history[-1].stroke, self.history[-1].resisting
+            row, course = self.history[-1], self._course
+            course.waited = row.stroke - course.last_exit[0]
+            course.last_exit = row.stroke, row.resisting
         self._course.moving = self._goes_on(left)
         self._remark(None if left else before, earlier, left)
         self._keep()
@@ -202,7 +204,8 @@ class Run:
         if increment.report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
             return False
         assert before is not None
-        self.restore(before)
+        self.restore(before[0])
+        self._course = before[1]
         self.say(TOO_TIGHT)
         return True
 
@@ -228,7 +231,17 @@ class Run:
         course = self._course
         at_rest = self.setup.drag > 0.0 and not course.moving
         curve = self.history.curve
-        latest = Latest(before, self._last, curve, left, course.last_exit, at_rest, earlier)
+        latest = Latest(
+            before,
+            self._last,
+            curve,
+            left,
+            course.last_exit,
+            at_rest,
+            earlier,
+            course.waited,
+            course.initial,
+        )
         remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
         course.remarks = remarks
         row = self.history[-1]

@@ -35,6 +35,7 @@ from scenes.scene import (
 from scenes.text import Text
 
 LEAST_DROP = 0.005  # of the pressure at the start: smaller falls of the stress are no avalanche
+ANNOUNCED = 0.02  # of the pressure at the start: smaller ones are told, and not announced
 GRAB = 4.0  # radius of the handle [R]
 
 
@@ -134,7 +135,8 @@ class Avalanches(Scene):
             count=share * len(weight),
             total=len(weight),
         )
-        return Remarks((text,), weight > weight.mean())
+        large = fall > ANNOUNCED * float(values["pressure"])
+        return Remarks((text,), weight > weight.mean(), {"avalanche": text} if large else {})
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _falls_are_sudden(track)]

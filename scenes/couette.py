@@ -10,6 +10,7 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
+from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
@@ -174,8 +175,14 @@ class Couette(Scene):
         shear, normal = plate_stresses(setup.world, width, latest.now)
         if normal <= 0.0:
             return Remarks(("the grains do not reach from plate to plate: nothing holds",))
-        text = "pressure {normal:.4f} k, shear stress over pressure {ratio:+.3f}"
-        return Remarks((Text(text, normal=normal, ratio=shear / normal),))
+        template = "pressure {normal:.4f} k, shear stress over pressure {ratio:+.3f}"
+        stresses = Text(template, normal=normal, ratio=shear / normal)
+        fall = sudden_fall(setup, latest)
+        if fall == 0.0:
+            return Remarks((stresses,))
+        text = Text("avalanche: the shear stress fell by {fall:.2g} k", fall=fall)
+        highlight = who_took_part(setup.packing, latest)
+        return Remarks((stresses, text), highlight, {"avalanche": text})
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _stresses_agree(setup)]

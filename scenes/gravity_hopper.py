@@ -13,6 +13,7 @@ import numpy as np
 from core import observables
 from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.falls import who_took_part
 from scenes.hopper import WALL, Shape, standing_arch
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -196,6 +197,9 @@ class GravityHopper(Scene):
         count = len(setup.packing)
         if not count:
             return Remarks(("empty",))
+        if latest.left and latest.waited > PAUSE and count + latest.left < latest.at_start:
+            text = Text("avalanche: it flows again, {count} grains are left", count=count)
+            return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
         if not latest.at_rest:
             return Remarks(("flowing",) if latest.left else ())
         bodies = latest.now.body_contacts
@@ -210,7 +214,7 @@ class GravityHopper(Scene):
             arch=int(found.sum()),
             count=count,
         )
-        return Remarks((text,), found)
+        return Remarks((text,), found, {"clog": text})
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _nothing_hangs(setup, track)]

@@ -11,6 +11,7 @@ from core.arches import arch
 from core.errors import InputError
 from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
@@ -157,17 +158,29 @@ class Hopper(Scene):
         return {"piston": (piston.home[0], piston.home[1] - depth)}
 
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
-        """Clogged: the force has risen over a stroke of one grain diameter while nothing left."""
+        """Clogged: the force has risen over a stroke of one grain diameter while nothing left; an arch: over half of that.
+
+        An avalanche: what held has broken, and the force falls.
+        """
         del values
         stroke, force = latest.curve[:, -1]
         since = float(stroke) - latest.last_exit[0]
-        if since < DIAMETER or force <= max(latest.last_exit[1], 0.0):
+        fall = sudden_fall(setup, latest)
+        if fall > 0.0:
+            text = Text("avalanche: the force fell by {fall:.2g} k R", fall=fall)
+            return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
+        if since < 0.5 * DIAMETER or force <= max(latest.last_exit[1], 0.0):
             return Remarks()
         bodies = latest.now.body_contacts
         body = setup.world.primitives()[1][bodies.primitive]
         side = np.where(body == setup.world.index("left wall"), -1, 0)
         side[body == setup.world.index("right wall")] = 1
         found = standing_arch(setup, latest, side)
+        if since < DIAMETER:
+            if found is None:
+                return Remarks()
+            text = Text("an arch of {grains} grains holds what is above", grains=int(found.sum()))
+            return Remarks((text,), found, {"arch": text})
         text = Text(
             "clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=since / DIAMETER
         )
@@ -177,7 +190,7 @@ class Hopper(Scene):
                 clogged=text,
                 grains=int(found.sum()),
             )
-        return Remarks((text,), found)
+        return Remarks((text,), found, {"clog": text})
 
 
 class Shape:

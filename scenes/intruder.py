@@ -7,6 +7,7 @@ import math
 from core.errors import InputError
 from core.generate import pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
@@ -14,13 +15,16 @@ from scenes.scene import (
     MATERIAL,
     SOLVER,
     Handle,
+    Latest,
     Progress,
+    Remarks,
     Scene,
     Setup,
     Values,
     recipe,
     solver,
 )
+from scenes.text import Text
 
 ASPECT = 1.4  # width of the box over its height
 MARGIN = 3.0  # between intruder and wall at both ends of the scripted drag [R]
@@ -114,6 +118,15 @@ class Intruder(Scene):
             outline=outline,
             friction=float(values["friction"]),
         )
+
+    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+        """An avalanche: grains that were locked give way, and the force falls."""
+        del values
+        fall = sudden_fall(setup, latest)
+        if fall == 0.0:
+            return Remarks()
+        text = Text("avalanche: the force fell by {fall:.2g} k R", fall=fall)
+        return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         body = setup.world["intruder"]

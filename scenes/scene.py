@@ -109,6 +109,8 @@ class Latest:
     last_exit: tuple[float, float]  # stroke and force when a grain last left
     at_rest: bool = False  # with drag: the grains have come to rest
     earlier: Earlier | None = None  # the one before it, also where grains have left since
+    waited: float = 0.0  # stroke between the exits of the latest grain and of the one before it
+    at_start: int = 0  # grains then
 
 
 Happening = Literal["clog", "arch", "avalanche"]

@@ -23,7 +23,7 @@ from sandbox.log import read_log
 from sandbox.replay import replay
 from sandbox.session import Session
 
-SMALL = {"grains": 60}
+SMALL = {"grains": 60.0}
 SCENES: dict[str, dict[str, float]] = {
     "intruder": {**SMALL, "intruder_radius": 2.0},
     "hopper": {**SMALL, "width": 12.0, "friction": 0.5, "orifice": 4.0},
@@ -166,7 +166,7 @@ def test_undo_brings_back_packing_seed_scene_and_what_a_reset_threw_away() -> No
     go(session, 4)
     do(session, Protocol(False))
     moved = session.state_hash()
-    commands = [
+    commands: list[Command] = [
         Reset(),
         Change("packing", "auxetic"),
         Change("seed", 5),
