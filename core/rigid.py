@@ -268,8 +268,10 @@ def depth(body: RigidBody, position: Point, others: Sequence[RigidBody]) -> floa
     there = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     there.position, there.angle = position, body.angle
     found = [info for shape in _shapes(body, there) for info in space.shape_query(shape)]
+    # Only points where they overlap are given; the sign of how far says which of the two shapes was asked about.
     return max(
-        (-point.distance for info in found for point in info.contact_point_set.points), default=0.0
+        (abs(point.distance) for info in found for point in info.contact_point_set.points),
+        default=0.0,
     )
 
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from core import observables
 from core.errors import InputError
 from core.packing import Packing
-from core.rigid import Point, RigidBody, RigidWorld, offset_path, polygon_area, wall
+from core.rigid import Point, RigidBody, RigidWorld, depth, offset_path, polygon_area, wall
 from core.rigid_contacts import DISC, EDGE, VERTEX
 
 SQUARE: list[Point] = [(0.0, 0.0), (14.0, 0.0), (14.0, 10.0), (0.0, 10.0)]
@@ -336,6 +336,15 @@ def test_a_piston_with_a_wall_drawn_through_it_can_only_leave() -> None:
     assert world.advance("piston", (0.0, 0.0), 0.1) == ((0.0, 0.0), "wall")
     moved, _ = world.advance("piston", (0.0, 9.0), 0.1)
     assert moved == pytest.approx((0.0, 0.1))
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_depth_of_an_overlap(swapped: bool) -> None:
+    disc = intruder(at=(3.0, 5.0), radius=2.0)
+    for x, expected in ((3.1, 2.2), (4.0, 1.3), (5.2, 0.1), (5.4, 0.0), (9.0, 0.0)):
+        line = RigidBody("line", segments=[(x, 0.0, x, 9.0, 0.3)])
+        pair = (line, disc) if swapped else (disc, line)
+        assert depth(pair[0], pair[0].position, [pair[1]]) == pytest.approx(expected)
 
 
 def test_a_held_body_stops_at_a_drawn_wall() -> None:
