@@ -336,7 +336,9 @@ SIGNS = {
     "▶": (((-0.6, -0.9), (0.9, 0.0), (-0.6, 0.9), (-0.6, -0.9)),),
     "⏸": (((-0.5, -0.9), (-0.5, 0.9)), ((0.5, -0.9), (0.5, 0.9))),
     "⏭": (((-0.8, -0.9), (0.5, 0.0), (-0.8, 0.9), (-0.8, -0.9)), ((0.8, -0.9), (0.8, 0.9))),
-    "●": (((0.0, 0.0), (0.0, 0.0)),),
+    "●": (),
+    "◉": (),
+    "○": (),
 }
 
 
@@ -345,8 +347,11 @@ def draw_sign(painter: Painter, sign: str, rect: pygame.Rect, colour: int | None
     scale = painter.scale
     size = min(6.5 * scale, 0.4 * min(rect.width, rect.height))
     colour = painter.theme.text if colour is None else colour
-    if sign == "●":
-        painter.disc(*rect.center, size, colour)
+    if not SIGNS[sign]:  # round
+        if sign != "●":
+            painter.ring(*rect.center, size, 2.4 * scale, colour)
+        if sign != "○":
+            painter.disc(*rect.center, size if sign == "●" else 0.45 * size, colour)
         return
     for strokes in SIGNS[sign]:
         points = np.array(strokes) * size + np.array(rect.center, dtype=np.float64)

@@ -8,7 +8,7 @@ from sandbox.draw.painter import Painter
 from sandbox.draw.text import SMALL, Type
 from sandbox.draw.theme import Theme, channels
 from sandbox.draw.widgets import PAD, Place, Places
-from sandbox.draw.widgets_look import Attention, draw_control
+from sandbox.draw.widgets_look import Attention, draw_control, draw_sign
 
 FOOT_LINES = 3  # of help
 
@@ -55,6 +55,21 @@ def panel_picture(
         )
     painter.flush()
     return whole
+
+
+def draw_tab(painter: Painter, rect: pygame.Rect) -> None:
+    """What opens the panel: an arrow on a plate."""
+    theme, scale = painter.theme, painter.scale
+    plate = rect.inflate(-round(8 * scale), -round(8 * scale))
+    painter.box(
+        plate,
+        theme.panel,
+        radius=7.0 * scale,
+        edge=theme.soft_text,
+        edge_width=1.5 * scale,
+        alpha=0.94,
+    )
+    draw_sign(painter, "‹", plate)
 
 
 def _draw_scroll_bar(painter: Painter, content: int, scroll: int) -> None:

@@ -23,6 +23,7 @@ __all__ = [
     "SECTIONS",
     "STOPPED",
     "STRESS_UNIT",
+    "THEMES",
     "TOOLS",
     "TOOLS_HELP",
     "VIEWS",
@@ -46,7 +47,9 @@ STRESS_UNIT = "k"
 LENGTH_UNIT = "R"
 PERCENT = "%"
 
-BROKEN = frozenset({"not finite", "collapsed"})  # ends of a relaxation that leave no picture to believe
+BROKEN = frozenset(
+    {"not finite", "collapsed"}
+)  # ends of a relaxation that leave no picture to believe
 
 BUTTONS = Section("buttons")
 BUTTONS_HELP = Section("buttons_help")
@@ -56,6 +59,7 @@ KINDS_SHORT = Section("kinds_short")
 PACKINGS = Section("packings")
 SECTIONS = Section("sections")
 STOPPED = Section("stopped")
+THEMES = Section("themes")
 TOOLS = Section("tools")
 TOOLS_HELP = Section("tools_help")
 VIEWS = Section("views")

@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import pygame
 
@@ -25,14 +26,17 @@ from sandbox.scene_file import SceneFile
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_arrows import Arrows
 from sandbox.views.window_brush import Brush
+from sandbox.views.window_curves import CurvesSection
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
 from sandbox.views.window_export import export, free_stem
+from sandbox.views.window_files import FilesSection
 from sandbox.views.window_focus import Focus
 from sandbox.views.window_general import GeneralSection
 from sandbox.views.window_hand import REACH, Mouse
 from sandbox.views.window_help import HelpPage
 from sandbox.views.window_inspect import Inspector
 from sandbox.views.window_keys import Action, action_of, packing_for
+from sandbox.views.window_looks import LooksSection
 from sandbox.views.window_menu import Choice, Menu
 from sandbox.views.window_panel import Panel
 from sandbox.views.window_parts import Part
@@ -129,8 +133,9 @@ class App:
         self.brush = Brush(self)
         self.arrows = Arrows(self)
         own = [ParameterSection(name, self.settings) for name in ("grains", "geometry", "solver")]
-        self.panel = Panel(self, folded={"solver"})
+        self.panel = Panel(self, folded={"solver", "files", "looks"})
         self.panel.sections += [GeneralSection(self), self.inspector, self.brush, *own]
+        self.panel.sections += [CurvesSection(self), FilesSection(self), LooksSection(self)]
         self.focus.groups = [self.arrows.stops, self.panel.stops, self.timeline.stops]
         # While a scene runs they see events first, in this order.
         self.parts: list[Part] = [
@@ -189,9 +194,12 @@ class App:
         self.show_menu = self.show_help = False
         self._dirty = True
 
-    def save(self) -> None:
+    def save(self, stem: str = "") -> None:
         """Write what there is down as a scene file in the current folder, under a name that is still free."""
-        name = free_stem(f"sandbox-{self.run.scene}", (".toml", ".npz")) + ".toml"
+        endings = (".toml", ".npz")
+        if not stem or any(Path(stem + ending).exists() for ending in endings):
+            stem = free_stem(stem or f"sandbox-{self.run.scene}", endings)
+        name = stem + ".toml"
         try:
             self.run.save(name)
         except InputError as error:
@@ -420,7 +428,7 @@ class App:
             scene = self.run.scene or "menu"
             self.toast(self.recorder.switch(scene, self.renderer.size, suffix))
         elif action is Action.LANGUAGE:
-            self._speak(language.after(language.present()))
+            self.speak(language.after(language.present()))
         elif action in (Action.LARGER, Action.SMALLER):
             self._rescale(1 if action is Action.LARGER else -1)
         elif action is Action.HELP or (action is Action.BACK and self.show_help):
@@ -563,7 +571,8 @@ class App:
             except InputError as error:
                 self.toast(words.say(message(error)))
 
-    def _speak(self, code: str) -> None:
+    def speak(self, code: str) -> None:
+        """Another language from now on."""
         language.use(code)
         pygame.display.set_caption(words.SPLASH_TITLE)
         self.toast(words.NEW_LANGUAGE.format(language=language.find("name")))
@@ -581,8 +590,12 @@ class App:
 
     def _rescale(self, way: int) -> None:
         nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - self.renderer.scale))
-        scale = SCALES[min(max(nearest + way, 0), len(SCALES) - 1)]
+        self.rescale(SCALES[min(max(nearest + way, 0), len(SCALES) - 1)])
+
+    def rescale(self, scale: float) -> None:
+        """Another size of everything but the grains."""
         self.renderer.resize(self.renderer.size, scale)
+        self._dirty = True
 
 
 def _sentence(text: str) -> str:

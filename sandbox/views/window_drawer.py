@@ -11,6 +11,7 @@ from sandbox.draw.layout import PANEL
 if TYPE_CHECKING:
     from sandbox.views.window import App
 
+TAB = 36.0, 64.0  # width and height at scale 1 [px]
 WIDEST = 0.92  # of the window's width, for a panel that lies over the canvas
 
 
@@ -31,6 +32,14 @@ class Drawer:
         width, _ = self.app.renderer.size
         wide = round(min(PANEL * self.app.renderer.scale, WIDEST * width))
         return pygame.Rect(width - wide, 0, wide, self.app.renderer.layout.status.top)
+
+    @property
+    def tab(self) -> pygame.Rect:
+        """What opens it by mouse or finger when it is not to be seen, at the right of the canvas [px]."""
+        scale, canvas = self.app.renderer.scale, self.app.renderer.layout.canvases[-1]
+        tab = pygame.Rect(0, 0, round(TAB[0] * scale), round(TAB[1] * scale))
+        tab.midright = canvas.midright
+        return tab
 
     @property
     def shown(self) -> bool:

@@ -28,6 +28,9 @@ ACTIONS = {
     "drive": Action.PROTOCOL,
     "brush": Action.BRUSH,
     "new": Action.NEW_SEED,
+    "menu": Action.MENU,
+    "help": Action.HELP,
+    "fold": Action.FOLD,
 }
 
 
@@ -51,7 +54,12 @@ class GeneralSection:
         seed = Stepper(
             "general/seed", words.PANEL_SEED, self.app.run.seed, 0, MOST_SEED, words.PANEL_SEED_HELP
         )
-        controls: list[Control] = []
+        controls: list[Control] = [
+            Row(
+                (self._button("menu"), self._button("help"), self._button("fold", sign="›")),
+                (1.4, 1.4, 0.8),
+            )
+        ]
         if len(packings) > 1:
             controls.append(
                 Choice(
@@ -75,17 +83,19 @@ class GeneralSection:
             Row(
                 (
                     self._button("drive", on=frame.protocol),
-                    self._button("compare", on=len(self.app.renderer.layout.canvases) > 1),
+                    self._button("compare", on=self.app.run.comparing),
                     self._button("brush", on=self.app.brush.on),
                 )
             ),
-            Row((self._button("record"), self._button("export"))),
+            Row((self._button("record", on=self.app.recorder.recording), self._button("export"))),
         ]
         return controls
 
-    def _button(self, name: str, *, on: bool = False, enabled: bool = True) -> Button:
-        title, about = words.BUTTONS[name], words.BUTTONS_HELP[name]
-        return Button(f"general/{name}", title, on, enabled, about)
+    def _button(
+        self, name: str, *, on: bool = False, enabled: bool = True, sign: str = ""
+    ) -> Button:
+        about = words.BUTTONS_HELP[name]
+        return Button(f"general/{name}", sign or words.BUTTONS[name], on, enabled, about)
 
     def use(self, name: str, value: Value, done: bool) -> None:
         """Do it."""

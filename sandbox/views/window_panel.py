@@ -26,7 +26,7 @@ from sandbox.draw.widgets import (
     slid_to,
 )
 from sandbox.draw.widgets_look import Attention
-from sandbox.draw.widgets_panel import foot_height, panel_picture
+from sandbox.draw.widgets_panel import draw_tab, foot_height, panel_picture
 from sandbox.views.window_drawer import Drawer
 from sandbox.views.window_edit import Edit
 from sandbox.views.window_keys import Action
@@ -157,6 +157,8 @@ class Panel(Silent):
             self._pointer = event.pos
         if self.app.mouse.holding:  # the hand goes on over the panel
             return False
+        if not self.drawer.shown:
+            return self._on_tab(event)
         inside = self.rect.collidepoint(self._pointer)
         if event.type == pygame.MOUSEMOTION:
             return self._motion(event.pos) or (inside and not any(event.buttons))
@@ -175,6 +177,14 @@ class Panel(Silent):
             return True
         if event.type == pygame.MOUSEWHEEL and inside:
             self._scroll_by(-event.precise_y * 60.0 * self.app.renderer.scale)
+            return True
+        return False
+
+    def _on_tab(self, event: pygame.event.Event) -> bool:
+        """A press on what opens the panel."""
+        pressed_there = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        if pressed_there and self.drawer.tab.collidepoint(event.pos):
+            self.fold()
             return True
         return False
 
@@ -365,6 +375,7 @@ class Panel(Silent):
         """All that is in view, from a picture that is kept as long as nothing has changed."""
         rect = self.rect
         if not self.drawer.shown:
+            draw_tab(painter, self.drawer.tab)
             return
         focus = self.app.focus
         edit = self.edit

@@ -54,6 +54,7 @@ class Settings(Silent):
         self.app = app
         self._wishes: dict[str, _Wish] = {}
         self._scene = ""
+        self._refusals = 0
 
     @property
     def frame(self) -> Frame | None:
@@ -102,6 +103,11 @@ class Settings(Silent):
         if frame.scene != self._scene:
             self._scene = frame.scene
             self._wishes.clear()
+        if frame.refusals != self._refusals:
+            if frame.refusals > self._refusals:
+                self.app.toast(words.say(frame.refusal))
+                self._wishes = {n: wish for n, wish in self._wishes.items() if wish.sent is None}
+            self._refusals = frame.refusals
         building = self.app.run.snapshot.phase == "building"
         by_name = {parameter.name: parameter for parameter in self.parameters()}
         changed = False
