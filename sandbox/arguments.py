@@ -195,3 +195,13 @@ def assignments(texts: Sequence[str]) -> dict[str, str]:
             raise InputError(f"--set {text}: {name} is set twice")
         values[name] = value
     return values
+
+
+def packings(text: str) -> tuple[str, ...]:
+    """``regular,mixed,auxetic``: two or three different names; the scene knows which there are."""
+    names = tuple(name.strip() for name in text.split(","))
+    if not 2 <= len(set(names)) == len(names) <= 3 or "" in names:
+        raise InputError(
+            f"{text!r}: name two or three different packings, such as regular,mixed,auxetic"
+        )
+    return names

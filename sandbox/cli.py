@@ -97,6 +97,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         help="name of a scene, or a scene file FILE.toml; without it: a menu",
     )
     _add_scene_options(play)
+    _add_compare(play)
     play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
     _add_size(play)
     play.add_argument(
@@ -118,6 +119,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     )
     record.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
     _add_scene_options(record)
+    _add_compare(record)
     record.add_argument(
         "--steps",
         type=argument(arguments.whole_number(1, arguments.MOST_STEPS)),
@@ -195,6 +197,15 @@ def _add_scene_options(parser: Parser) -> None:
     )
 
 
+def _add_compare(parser: Parser) -> None:
+    parser.add_argument(
+        "--compare",
+        type=argument(arguments.packings),
+        metavar="NAME,NAME[,NAME]",
+        help="packings side by side under one hand, such as regular,mixed,auxetic",
+    )
+
+
 def _add_size(parser: Parser) -> None:
     parser.add_argument(
         "--size",
@@ -260,13 +271,17 @@ def _play(options: argparse.Namespace) -> int:
     if options.scene is None:
         if options.set:
             raise InputError("--set needs a scene: write play SCENE --set NAME=VALUE")
+        if options.compare:
+            raise InputError("--compare needs a scene: write play SCENE --compare NAME,NAME")
         _check_packing_of_some_scene(_packing(options))
         settings: dict[str, object] = {}
         scene: str | SceneFile | None = None
     else:
-        session = _session(options)
+        session = _sessions(options)[0]
         settings = dict(session.settings)
         scene = session.file or session.scene.name
+        if session.file and options.compare:
+            raise InputError("--compare: open the scene file without it, then press C")
     environment.require_pygame_ce()
     environment.require_display()
     from sandbox.views import window
@@ -281,6 +296,7 @@ def _play(options: argparse.Namespace) -> int:
         scale=options.scale,
         theme=options.theme,
         view=options.view,
+        packings=options.compare or (),
     )
 
 
@@ -288,14 +304,18 @@ def _record(options: argparse.Namespace) -> int:
     output = _output(options, options.size, options.fps)
     if output is None:
         raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
-    session = _session(options)
-    steps: int = options.steps or session.scene.steps(session.settings)
+    sessions = _sessions(options)
+    steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.views.record import record
+    from sandbox.views.record_side_by_side import record_side_by_side
 
     with stop_like_ctrl_c():
-        outcome = record(session, steps, output)
-    _report(session, outcome, output)
+        if len(sessions) == 1:
+            outcome = record(sessions[0], steps, output)
+        else:
+            outcome = record_side_by_side(sessions, steps, output)
+    _report(sessions, outcome, output)
     return INTERRUPTED if outcome.interrupted else OK
 
 
@@ -312,7 +332,7 @@ def _replay(options: argparse.Namespace) -> int:
 
     with stop_like_ctrl_c():
         session, outcome = repeat(log, output)
-    _report(session, outcome, output)
+    _report([session], outcome, output)
     if outcome.interrupted:
         return INTERRUPTED
     same = session.state_hash() == log.hash
@@ -387,6 +407,23 @@ def _session(options: argparse.Namespace) -> Session:
     return Session(options.scene, _packing(options), _seed(options), settings)
 
 
+def _sessions(options: argparse.Namespace) -> list[Session]:
+    """One session, or one for each packing to be compared."""
+    if options.compare is None:
+        return [_session(options)]
+    if options.packing is not None:
+        raise InputError("--packing and --compare: give one of them")
+    from sandbox.session import Session
+
+    options.packing = None if options.scene.lower().endswith(".toml") else options.compare[0]
+    first = _session(options)
+    kinds = [first.scene.check_packing(kind) for kind in options.compare]
+    if first.file is not None:
+        return [Session.from_file(first.file.of_kind(kind)) for kind in kinds]
+    name, seed, settings = first.scene.name, first.seed, first.settings
+    return [Session(name, kind, seed, settings) for kind in kinds]
+
+
 def _packing(options: argparse.Namespace) -> str:
     return "mixed" if options.packing is None else str(options.packing)
 
@@ -405,16 +442,17 @@ def _check_packing_of_some_scene(name: str) -> None:
         raise InputError(f"unknown packing {name!r}: choose {', '.join(known)}")
 
 
-def _report(session: Session, outcome: Outcome, output: Output | None) -> None:
-    """What a finished run came to, in one line, and the scene's own checks."""
+def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None) -> None:
+    """What a finished run came to, a line for each packing, and the scene's own checks."""
     if outcome.interrupted:
         print(_interrupted(outcome, output), file=sys.stderr)
         if not outcome.increments:
             return
-    print(_summary(session, outcome))
-    for check in session.checks():
-        verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
-        print(f"  {verdict:<5}  {check.name}: {check.measured}")
+    for session in sessions:
+        print(f"{session.packing}: " * (len(sessions) > 1) + _summary(session, outcome))
+        for check in session.checks():
+            verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
+            print(f"  {verdict:<5}  {check.name}: {check.measured}")
 
 
 def _interrupted(outcome: Outcome, output: Output | None) -> str:
@@ -434,7 +472,7 @@ def _summary(session: Session, outcome: Outcome) -> str:
     unfinished = sum(str(reason) != "converged" for reason in reasons)
     mean = float(forces.mean()) if len(forces) else 0.0
     return (
-        f"{outcome.frames} frames, {outcome.increments} increments "
+        f"{outcome.frames} frames, {len(reasons)} increments "
         f"({unfinished or 'none'} did not converge), "
         f"mean {session.frame().curve_label}: {mean:.4g}, state {session.state_hash()}"
     )

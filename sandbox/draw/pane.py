@@ -17,16 +17,25 @@ from sandbox.frame import Frame
 
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
 SWATCH = 26.0  # of the packing's curve
+CAPTION_LINES = 2  # at the foot of a canvas
+FOOT_SHARE = 0.14  # of a canvas' height, for them, at most
 MOST_LINES = 3  # on a plate
 COVERED = 0.4  # of a canvas' height, by plates, at most
 FRESH = 40  # an event is spoken of for so many increments
 
 
-def strip_of(canvas: pygame.Rect, scale: float) -> tuple[pygame.Rect, pygame.Rect]:
-    """A canvas cut into its strip and what is left for the grains."""
-    height = min(round(STRIP * scale), canvas.height // 4)
-    strip = pygame.Rect(canvas.left, canvas.top, canvas.width, height)
-    return strip, pygame.Rect(canvas.left, strip.bottom, canvas.width, canvas.height - height)
+def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
+    """A canvas cut into its strip, what is left for the grains, and a foot for words, of no height on a small canvas."""
+    strip = min(round(STRIP * type_.scale), canvas.height // 4)
+    foot = CAPTION_LINES * type_.height(BODY) + round(8 * type_.scale)
+    if foot > FOOT_SHARE * canvas.height:
+        foot = 0
+    top, bottom = canvas.top + strip, canvas.bottom - foot
+    return (
+        pygame.Rect(canvas.left, canvas.top, canvas.width, strip),
+        pygame.Rect(canvas.left, top, canvas.width, bottom - top),
+        pygame.Rect(canvas.left, bottom, canvas.width, foot),
+    )
 
 
 def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
@@ -66,13 +75,26 @@ def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
 
 
 def said_of(frame: Frame) -> tuple[str, ...]:
-    """What a frame has to say: its notices, and an event that has just happened."""
+    """What a frame has to say: its notices, or else an event that has just happened."""
     notices = [words.say(notice) for notice in frame.notices]
-    if frame.events and frame.increment - frame.events[-1].increment < FRESH:
-        event = words.say(frame.events[-1].text)
-        if event not in notices:
-            notices.insert(0, event)
+    if not notices and frame.events and frame.increment - frame.events[-1].increment < FRESH:
+        notices.append(words.say(frame.events[-1].text))
     return tuple(notices)
+
+
+def draw_caption(painter: Painter, foot: pygame.Rect, notices: Sequence[str]) -> None:
+    """The latest words at the foot of a canvas, so that they cover nothing."""
+    type_, line = painter.type, painter.type.height(BODY)
+    room = foot.width - round(20 * painter.scale)
+    lines: list[str] = []
+    for notice in reversed(notices):
+        free = CAPTION_LINES - len(lines)
+        if free:
+            lines = [*_at_most(type_, type_.wrapped(notice, BODY, room), free, room), *lines]
+    y = foot.centery - 0.5 * (len(lines) - 1) * line
+    for text in lines:
+        painter.text(text, foot.centerx, y, anchor="centre", clip=foot)
+        y += line
 
 
 @dataclass(frozen=True, slots=True)

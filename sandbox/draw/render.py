@@ -22,11 +22,12 @@ from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
 from sandbox.draw.pane import (
     above,
+    cut,
+    draw_caption,
     draw_plates,
     draw_strip,
     place_plates,
     said_of,
-    strip_of,
 )
 from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Curve, draw_plot
@@ -145,7 +146,8 @@ class Renderer:
             self.arrange(**{**self._wanted, "panes": len(panes)})
         shown = [frame for frame in panes if frame is not None]
         painter = self.painter()
-        self.bodies = bodies = self._canvases(painter, panes)
+        bodies, feet = self._canvases(painter, panes)
+        self.bodies = bodies
         bounds = [(frame or shown[0]).bounds for frame in panes]
         views = list(zip(bounds, bodies, strict=True))
         self.cameras = Camera.fit_all(views, MARGIN * self.scale)
@@ -160,7 +162,7 @@ class Renderer:
             rect, camera = bodies[pane], self.cameras[pane]
             said = () if frame is None else said_of(frame)
             said = (*said, *(told[pane] if pane < len(told) else ()))
-            own = place_plates(self.type, rect, said, bottom)
+            own = [] if feet[pane].height else place_plates(self.type, rect, said, bottom)
             if frame is not None:
                 self._draw_scene(painter, rect, camera, frame, next(waiting), chain_top)
                 for flash in flashes:
@@ -169,6 +171,8 @@ class Renderer:
                 free = above(rect, [*plates, *own], 0.4 * rect.height)
                 draw_handles(painter, rect, camera, frame, hand or Hand(), hand_top, free)
             draw_plates(painter, own)
+            if feet[pane].height:
+                draw_caption(painter, feet[pane], said)
         draw_plates(painter, plates)
         draw_header(painter, self.layout.header, shown, looks[0], chain_top)
         labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
@@ -179,21 +183,24 @@ class Renderer:
         painter.flush()
         return self.surface
 
-    def _canvases(self, painter: Painter, panes: Sequence[Frame | None]) -> list[pygame.Rect]:
-        """Clear the canvases, title them if there are several; returns what is left for the grains."""
+    def _canvases(
+        self, painter: Painter, panes: Sequence[Frame | None]
+    ) -> tuple[list[pygame.Rect], list[pygame.Rect]]:
+        """Clear the canvases, title them if there are several; returns what is left for the grains, and for words below."""
         canvases = self.layout.canvases
         if len(canvases) == 1:
             painter.fill(canvases[0], self.theme.ground)
-            return [canvases[0]]
+            return [canvases[0]], [pygame.Rect(canvases[0].bottomleft, (0, 0))]
         painter.fill(canvases[0].unionall(canvases[1:]), self.theme.hairline)  # shows in the seams
-        bodies = []
+        bodies, feet = [], []
         for canvas, frame in zip(canvases, panes, strict=True):
-            strip, body = strip_of(canvas, self.scale)
+            strip, body, foot = cut(canvas, self.type)
             painter.fill(canvas, self.theme.ground)
             if frame is not None:
                 draw_strip(painter, strip, frame)
             bodies.append(body)
-        return bodies
+            feet.append(foot)
+        return bodies, feet
 
     def _draw_scene(
         self,

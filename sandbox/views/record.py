@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sandbox.interrupts import deferred
-from sandbox.views.data import write_csv
+from sandbox.views.data import Table, write_csv
 from sandbox.views.video import VideoWriter
 
 if TYPE_CHECKING:
+    from sandbox.frame import Frame
     from sandbox.log import Log
     from sandbox.session import Session
 
@@ -39,7 +41,7 @@ class Outcome:
 
     increments: int
     frames: int
-    rows: int
+    rows: int  # of all packings
     interrupted: bool
 
 
@@ -54,7 +56,7 @@ def record(session: Session, steps: int, output: Output) -> Outcome:
     with build_bar() as progress:
         session.build(progress)
     session.submit(Protocol(True))
-    return run(session, slices(session), steps, output)
+    return run([session], slices(session), steps, output)
 
 
 def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
@@ -64,7 +66,7 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
     with build_bar() as progress:
         states = replay(log, progress)
         session = next(states)
-    outcome = run(session, (True for _ in states), log.end, output)
+    outcome = run([session], (True for _ in states), log.end, output)
     if not outcome.interrupted:
         next(states, None)  # commands that came after the last increment
     return session, outcome
@@ -79,11 +81,13 @@ def slices(session: Session) -> Iterator[bool]:
         yield finished
 
 
-def run(session: Session, work: Iterator[bool], steps: int, output: Output | None) -> Outcome:
+def run(
+    sessions: Sequence[Session], work: Iterator[bool], steps: int, output: Output | None
+) -> Outcome:
     """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
-    The session is built already. A frame is written after each increment, the table at the end.
-    Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    The sessions, several of them side by side, are built already. A frame is written after each increment, the table at the
+    end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
     """
     from tqdm import tqdm
 
@@ -95,7 +99,9 @@ def run(session: Session, work: Iterator[bool], steps: int, output: Output | Non
     try:
         with (
             writer or nullcontext(),
-            tqdm(total=steps, desc=session.scene.name, unit="increment", **_bar_options()) as bar,
+            tqdm(
+                total=steps, desc=sessions[0].scene.name, unit="increment", **_bar_options()
+            ) as bar,
         ):
             while increments < steps:
                 with deferred():
@@ -104,14 +110,21 @@ def run(session: Session, work: Iterator[bool], steps: int, output: Output | Non
                         break
                     if finished:
                         if writer is not None and draw is not None:
-                            writer.write(draw(session.frame()))
+                            writer.write(draw([session.frame() for session in sessions]))
                         increments += 1
                         bar.update()
     except KeyboardInterrupt:
         interrupted = True
     if table and increments:
-        write_csv(table, session.history)
-    return Outcome(increments, writer.frames if writer else 0, len(session.history), interrupted)
+        write_csv(table, _table(sessions))
+    rows = sum(len(session.history) for session in sessions)
+    return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
+
+
+def _table(sessions: Sequence[Session]) -> Table:
+    from sandbox.views.record_side_by_side import SideBySide
+
+    return sessions[0].history if len(sessions) == 1 else SideBySide(sessions)
 
 
 @contextmanager
@@ -131,15 +144,24 @@ def build_bar() -> Iterator[Callable[[str, float], None]]:
         bar.update(max(0.0, 1.0 - bar.n))
 
 
-def _drawer(output: Output) -> Callable[[Any], Any]:
+def _drawer(output: Output) -> Callable[[Sequence[Frame]], Any]:
+    """What makes a picture of one frame or several: the next of the film."""
     from sandbox.environment import prepare_headless
 
     prepare_headless()
+    from sandbox.draw.flashes import Flashes
     from sandbox.draw.render import Renderer
 
     # Letters and lines keep their share of the picture whatever its size.
     scale = max(0.5, min(output.size[0] / 1280, output.size[1] / 720))
-    return Renderer(output.size, scale, output.theme, output.view).image
+    renderer = Renderer(output.size, scale, output.theme, output.view)
+    flashes, numbers = Flashes(), count()
+
+    def draw(frames: Sequence[Frame]) -> Any:
+        lit = flashes.follow(frames, next(numbers) / output.fps)  # the film's time, not the clock's
+        return renderer.image(frames, flashes=lit)
+
+    return draw
 
 
 def _bar_options() -> dict[str, Any]:

@@ -64,8 +64,8 @@ class Cardboard:
 
 @pytest.fixture
 def session(monkeypatch: pytest.MonkeyPatch) -> Cardboard:
-    def draw(frame: int) -> Any:
-        return np.full((SIZE[1], SIZE[0], 3), 40 * frame, np.uint8)
+    def draw(frames: list[int]) -> Any:
+        return np.full((SIZE[1], SIZE[0], 3), 40 * frames[0], np.uint8)
 
     monkeypatch.setattr(record, "_drawer", lambda output: draw)
     return Cardboard()
@@ -73,7 +73,7 @@ def session(monkeypatch: pytest.MonkeyPatch) -> Cardboard:
 
 def run(session: Any, steps: int, film: Path | None, table: Path | None) -> Outcome:
     output = Output(film, table, SIZE)
-    return record.run(session, record.slices(session), steps, output)
+    return record.run([session], record.slices(session), steps, output)
 
 
 def test_a_frame_and_a_row_per_increment(tmp_path: Path, session: Cardboard) -> None:
@@ -152,5 +152,5 @@ def test_a_film_shows_the_view_that_was_asked_for(tmp_path: Path, view: str, the
     output = Output(tmp_path / "film.png", None, (640, 360), 30.0, view, theme)
     draw = record._drawer(output)
     wanted = Renderer((640, 360), 0.5, theme, view).image(frame)
-    assert np.array_equal(draw(frame), wanted)
+    assert np.array_equal(draw([frame]), wanted)
     assert not np.array_equal(wanted, Renderer((640, 360), 0.5).image(frame))
