@@ -44,6 +44,7 @@ from scenes.text import message
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
 COMPILE_SHARE = 0.5
 UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
+JOURNEYS = (Reset, Recall, Undo, Redo)
 
 Progress = Callable[[str, float], None]
 
@@ -126,12 +127,13 @@ class Session:
         with self._lock:
             self._pending.append(command)
 
-    def settle(self) -> None:
-        """Let waiting commands take effect, unless an increment is under way."""
+    def settle(self) -> bool:
+        """Let waiting commands take effect, unless an increment is under way. True if they led to another time."""
+        travelled = False
         while not self.busy:
             with self._lock:
                 if not self._pending:
-                    return
+                    break
                 command = self._pending.popleft()
             try:
                 self._apply(command)
@@ -139,7 +141,9 @@ class Session:
                 self.run.say(message(error))
                 self._refusals = self._refusals[0] + 1, message(error)
                 continue
+            travelled |= isinstance(command, JOURNEYS)
             self._commands.append((self._finished, command))
+        return travelled
 
     def _apply(self, command: Command) -> None:
         before = self._moment() if isinstance(command, UNDOABLE) else None
@@ -265,9 +269,11 @@ class Session:
         return self._finished
 
     def advance(self, max_iterations: int = 200) -> bool:
-        """One slice of work, at most so many force evaluations. True if it finished an increment. Commands enter in between."""
-        self.settle()
-        if not self.run.advance(max_iterations):
+        """One slice of work, at most so many force evaluations. True if it finished an increment. Commands enter in between.
+
+        Where they lead to another time, nothing moves yet: it can be looked at first, and its future is not lost.
+        """
+        if self.settle() or not self.run.advance(max_iterations):
             return False
         self._finished += 1
         return True

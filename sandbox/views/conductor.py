@@ -79,8 +79,10 @@ class Conductor:
         return len(self._past)
 
     def submit(self, command: Command) -> None:
-        """Send a command to all. Of those that only the latest of counts, only the latest is kept."""
+        """Send a command to all. Of those that only the latest of counts, only the latest is kept. A recall pauses."""
         with self._changed:
+            if isinstance(command, Recall):
+                self._paused, self._steps = True, 0
             if self._mail and self._replaces(command, self._mail[-1]):
                 self._mail[-1] = command
             else:

@@ -259,3 +259,15 @@ def test_a_log_with_all_of_it_replays_to_the_same_bits(tmp_path: Path) -> None:
     assert again.state_hash() == session.state_hash()
     assert list(again.history.rows()) == list(session.history.rows())
     assert again.frame().settings == session.frame().settings
+
+
+def test_a_recall_or_an_undo_is_seen_before_anything_moves() -> None:
+    session = built()
+    do(session, Protocol(True))
+    hashes = [session.state_hash(), *go(session, 5)]
+    session.submit(Recall(2))
+    assert not session.advance()
+    assert session.state_hash() == hashes[2]
+    assert session.frame().last_kept == 5
+    assert not session.idle
+    assert go(session, 1) == hashes[3:4]
