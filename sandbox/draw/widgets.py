@@ -202,7 +202,7 @@ def arranged(controls: Sequence[Control], type_: Type, width: int) -> Places:
     scale = type_.scale
     pad, gap = round(PAD * scale), round(GAP * scale)
     y, places = gap, []
-    for control in controls:
+    for control, following in zip(controls, [*controls[1:], None], strict=True):
         row = control if isinstance(control, Row) else Row((control,))
         shares = row.shares or (1.0,) * len(row.controls)
         room = width - 2 * pad - gap * (len(row.controls) - 1)
@@ -214,7 +214,8 @@ def arranged(controls: Sequence[Control], type_: Type, width: int) -> Places:
             corner = round(x), y + height - own
             places.append(Place(part, pygame.Rect(corner, (round(right) - round(x), own))))
             x = right + gap
-        y += height + (gap if not isinstance(row.controls[0], Fact) else 0)
+        lines = isinstance(control, Fact) and isinstance(following, Fact)
+        y += height + (0 if lines else gap)
     return Places(tuple(places), y)
 
 

@@ -210,10 +210,13 @@ class Brush(Silent):
         """On the heading."""
         return words.BRUSH_TITLE
 
+    @property
+    def there(self) -> bool:
+        """While the brush is in hand."""
+        return self.on
+
     def controls(self) -> Sequence[Control]:
-        """Tools, kind and size; there while the brush is in hand."""
-        if not self.on:
-            return ()
+        """Tools, kind and size."""
         tools = [
             Button(
                 f"brush/{tool}", words.TOOLS[tool], tool == self.tool, help=words.TOOLS_HELP[tool]

@@ -27,6 +27,11 @@ class CurvesSection:
         """On the heading."""
         return words.SECTIONS[self.name]
 
+    @property
+    def there(self) -> bool:
+        """While there is a curve."""
+        return bool(self.app.run.curves.of(self.app.run.scene))
+
     def controls(self) -> Sequence[Control]:
         """Name, eye, and a cross."""
         rows = [
@@ -50,8 +55,6 @@ class CurvesSection:
             )
             for kept in self.app.run.curves.of(self.app.run.scene)
         ]
-        if not rows:
-            return ()
         return [*rows, Button("curves/clear", words.CURVES_CLEAR, help=words.CURVES_CLEAR_HELP)]
 
     def use(self, name: str, value: Value, done: bool) -> None:

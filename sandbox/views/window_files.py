@@ -37,10 +37,13 @@ class FilesSection:
         """On the heading."""
         return words.SECTIONS[self.name]
 
+    @property
+    def there(self) -> bool:
+        """Always."""
+        return True
+
     def controls(self) -> Sequence[Control]:
         """Save, then open."""
-        if self.name in self.app.panel.folded:
-            return (Note(""),)  # nobody sees what is in it: the folder is left alone
         field = TextField("files/name", words.FILE_NAME, self._stem(), help=words.FILE_NAME_HELP)
         save = Button("files/save", words.FILE_SAVE, help=words.FILE_SAVE_HELP)
         files = self._files()

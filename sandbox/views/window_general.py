@@ -43,6 +43,11 @@ class GeneralSection:
     def __init__(self, app: App) -> None:
         self.app = app
 
+    @property
+    def there(self) -> bool:
+        """Always, while something runs."""
+        return self.app.run.snapshot.frame is not None
+
     def controls(self) -> Sequence[Control]:
         """Choices first, then buttons."""
         frame = self.app.run.snapshot.frame

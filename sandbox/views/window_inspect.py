@@ -15,7 +15,6 @@ from sandbox.draw.numbers import number
 from sandbox.draw.painter import Painter
 from sandbox.draw.periodic import images
 from sandbox.draw.widgets import Button, Control, Fact, Note
-from sandbox.draw.widgets_look import ring_colour
 from sandbox.draw.widgets_scale import shown
 from sandbox.frame import Frame
 from sandbox.inspection import Inspection, grain_at, inspect
@@ -155,6 +154,11 @@ class Inspector(Silent):
         """On the heading."""
         return words.GRAIN_TITLE
 
+    @property
+    def there(self) -> bool:
+        """While a grain is looked at."""
+        return self.inspection is not None
+
     def controls(self) -> Sequence[Control]:
         """All about the grain; every neighbour is a button that leads to it."""
         found = self.inspection
@@ -229,4 +233,4 @@ def _draw_outline(
     py = centre_y - camera.scale * (u * math.sin(tilt) + v * math.cos(tilt))
     if np.isfinite(px).all() and np.isfinite(py).all():
         painter.polyline(px, py, 7.0 * scale, painter.theme.ground, rect)
-        painter.polyline(px, py, 3.5 * scale, ring_colour(painter.theme), rect)
+        painter.polyline(px, py, 3.5 * scale, painter.theme.text, rect)

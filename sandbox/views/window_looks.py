@@ -30,6 +30,11 @@ class LooksSection:
         """On the heading."""
         return words.SECTIONS[self.name]
 
+    @property
+    def there(self) -> bool:
+        """Always."""
+        return True
+
     def controls(self) -> Sequence[Control]:
         """Switches and choices."""
         renderer = self.app.renderer

@@ -61,6 +61,7 @@ class Panel(Silent):
         self.scroll = 0
         self.draft: Draft | None = None
         self.edit: Edit | None = None
+        self._arranged: object = None  # controls, type and width that the places are for
         self._places = Places((), 0)
         self._hover = ""
         self._press: Press | None = None
@@ -102,10 +103,11 @@ class Panel(Silent):
         """Put the controls together anew; follow the keyboard."""
         del now
         if not self.drawer.shown:
-            self._places = Places((), 0)
+            self._arranged, self._places = None, Places((), 0)
             return False
-        before = self._places
-        self._places = arranged(self._controls(), self.app.renderer.type, self.rect.width)
+        before, wanted = self._places, (self._controls(), self.app.renderer.type, self.rect.width)
+        if wanted != self._arranged:  # to find the places takes a millisecond
+            self._arranged, self._places = wanted, arranged(*wanted)
         focus = self.app.focus
         if self.draft is not None and not self.draft.by_mouse and focus.name != self.draft.name:
             self._finish_draft()
@@ -117,19 +119,17 @@ class Panel(Silent):
                 room = round(TARGET * self.app.renderer.scale)
                 self.scroll = self._places.scroll_to(focus.name, self.scroll, self._view, room)
         self.scroll = max(0, min(self.scroll, self._places.height - self._view))
-        return self._places != before
+        return self._places is not before
 
     def _controls(self) -> list[Control]:
         controls: list[Control] = []
         for section in self.sections:
-            own = section.controls()
-            if not own:
+            if not section.there:
                 continue
+            is_open = not section.title or section.name not in self.folded
             if section.title:
-                is_open = section.name not in self.folded
                 controls.append(Heading(section.name, section.title, is_open))
-                own = own if is_open else ()
-            controls.extend(own)
+            controls.extend(section.controls() if is_open else ())
         if self.draft is not None:
             draft = self.draft
             controls = [

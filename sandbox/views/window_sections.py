@@ -21,8 +21,12 @@ class Section(Protocol):
     def title(self) -> str:
         """On its heading; empty: it has none and cannot be folded."""
 
+    @property
+    def there(self) -> bool:
+        """Is there anything in it at the moment?"""
+
     def controls(self) -> Sequence[Control]:
-        """What there is at the moment; nothing: the section is not there."""
+        """What there is; asked for only while the section is open."""
 
     def use(self, name: str, value: Value, done: bool) -> None:
         """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""

@@ -141,10 +141,17 @@ class ParameterSection:
         """On the heading."""
         return words.SECTIONS[self.name]
 
+    @property
+    def there(self) -> bool:
+        """Has the scene such parameters?"""
+        return bool(self._own())
+
+    def _own(self) -> list[Parameter]:
+        return [p for p in self.settings.parameters() if section_of(p) == self.name]
+
     def controls(self) -> Sequence[Control]:
         """One for each parameter."""
-        own = (p for p in self.settings.parameters() if section_of(p) == self.name)
-        return [self._control(parameter) for parameter in own]
+        return [self._control(parameter) for parameter in self._own()]
 
     def use(self, name: str, value: Value | str, done: bool) -> None:
         """Ask the scene for it."""
