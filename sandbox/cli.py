@@ -167,6 +167,9 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         "--only", nargs="+", metavar="CLAIM", help="these claims instead of all (paper)"
     )
     study.add_argument(
+        "--scene", nargs="+", metavar="NAME", help="these scenes instead of all (accuracy)"
+    )
+    study.add_argument(
         "--jobs",
         type=argument(arguments.whole_number(1, 64)),
         default=2,

@@ -2,5 +2,6 @@
 
 OK = 0
 DIFFERENT = 1  # a replay came out otherwise than its log says
+FAILED = 1  # a study could not carry out all that it was asked
 USER_MISTAKE = 2
 INTERRUPTED = 130  # as shells count: 128 + SIGINT

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable
 
 from core.errors import InputError
-from sandbox.exit_codes import INTERRUPTED, OK
+from sandbox.exit_codes import FAILED, INTERRUPTED, OK
 
 Study = Callable[[argparse.Namespace], int]
 
@@ -34,6 +34,26 @@ def paper(options: argparse.Namespace) -> int:
     return OK
 
 
+def accuracy(options: argparse.Namespace) -> int:
+    """Measure error against run time."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies import accuracy as study
+    from sandbox.studies.paper import prepare_folder, require_matplotlib
+
+    study.choose(options.scene)
+    require_matplotlib()
+    study.require_scipy()
+    folder = prepare_folder(options.out)
+    with stop_like_ctrl_c():
+        outcome = study.study(folder, scenes=options.scene, quick=options.quick, jobs=options.jobs)
+    if outcome.interrupted:
+        return stopped(outcome.jobs)
+    for name, words in (*outcome.statements.items(), *outcome.failures.items()):
+        print(f"{name:<18}{words}")
+    print(f"tables, numbers and plots: {folder / 'accuracy.md'}, results.json, *.png")
+    return FAILED if outcome.failures else OK
+
+
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
     print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
@@ -47,5 +67,5 @@ def refuse_foreign_options(options: argparse.Namespace) -> None:
             raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
 
 
-STUDIES: dict[str, Study] = {"paper": paper}
-OWN_OPTIONS = {"only": "paper"}
+STUDIES: dict[str, Study] = {"paper": paper, "accuracy": accuracy}
+OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}

@@ -111,7 +111,7 @@ def study(
     )
     seconds = time.perf_counter() - began
     _draw(chosen, plans, results, folder)
-    about = {"quick": quick, "seconds": round(seconds, 1), "runs_from_before": found, **_machine()}
+    about = {"quick": quick, "seconds": round(seconds, 1), "runs_from_before": found, **machine()}
     write_text(folder / "results.json", as_json(judged, list(results.values()), about))
     write_text(folder / "claims.md", as_markdown(judged, list(results.values()), about))
     return Outcome(judged, len(results), _failures(results), interrupted=False)
@@ -175,7 +175,7 @@ def _failures(results: dict[Request, Result]) -> int:
     return sum(result.failure is not None for result in results.values())
 
 
-def _machine() -> dict[str, Any]:
+def machine() -> dict[str, Any]:
     """What the study ran on."""
     versions = {"auxetic-sandbox": __version__}
     for name in LIBRARIES:

@@ -1,0 +1,319 @@
+"""Everything that is measured from one beginning of one scene, as plain numbers: one job of the study."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from statistics import median
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core import reference
+from core.observables import force_drops
+from sandbox import __version__
+from sandbox.studies.accuracy_chart import paper_chart
+from sandbox.studies.accuracy_contact import contact_job
+from sandbox.studies.accuracy_exact import exact_increment
+from sandbox.studies.accuracy_math import first_beyond, rms
+from sandbox.studies.accuracy_peers import l_bfgs_b, newton
+from sandbox.studies.accuracy_protocols import APART, FULL, QUICK, Protocol, Sweeps, protocol
+from sandbox.studies.accuracy_walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
+from scenes import registry
+
+Floats = NDArray[np.float64]
+Stopping = Callable[[], bool]
+
+DATA_VERSION = 1  # raise it when a job measures something else
+TIGHT = 1e-8  # relative residual of the walks that say where paths part
+CHECKED = 1e-9  # relative residual asked of the Newton polish
+SLICE = 200  # force evaluations between two looks of a window
+PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, "paper's chart": paper_chart}
+QUANTITIES = ("force", "stress", "position", "shape", "energy")
+NO_TWIN = 1000  # grains beyond which the slow twin is not asked
+
+
+@dataclass(frozen=True)
+class Job:
+    """One beginning of one scene."""
+
+    scene: str
+    seed: int
+    quick: bool
+
+    def key(self) -> str:
+        """Name of its file: changes with all that it depends on, the defaults of its scene too."""
+        plan, sweeps = protocol(self.scene, self.quick), QUICK if self.quick else FULL
+        settings = sorted(registry.get(self.scene).settings(dict(plan.settings)).items())
+        words = [asdict(self), asdict(plan), asdict(sweeps), settings, DATA_VERSION, __version__]
+        digest = hashlib.sha256(json.dumps(words, sort_keys=True).encode()).hexdigest()[:12]
+        return f"{self.scene}-{self.seed}-{digest}"
+
+
+class Stopped(Exception):
+    """The study was interrupted."""
+
+
+def measure(job: Job, stopping: Stopping = lambda: False) -> dict[str, Any]:
+    """Carry a job out. Raises InputError for a scene that there is not, or Stopped."""
+    plan, sweeps = protocol(job.scene, job.quick), QUICK if job.quick else FULL
+    scene = registry.get(job.scene)
+    if job.scene == "two_ellipses":
+        return contact_job(scene, plan.length)
+    packing = "mixed" if "mixed" in scene.packings else scene.packings[0]
+    start = begin(job.scene, packing, job.seed, dict(plan.settings), plan.lead, plan.least_force)
+    return Bench(start, plan, sweeps, stopping).report(full=job.seed == 1)
+
+
+class Bench:
+    """A start, its reference, and the walks that are held against it."""
+
+    def __init__(
+        self, start: Start, plan: Protocol, sweeps: Sweeps, stopping: Stopping = lambda: False
+    ) -> None:
+        self.start, self.plan, self.sweeps, self.stopping = start, plan, sweeps, stopping
+        self.reference = self.walk(
+            Knobs(tolerance=sweeps.reference_tolerance, step=sweeps.reference_step)
+        )
+        looks = self.reference.looks
+        self.scales = {
+            "force": float(np.mean([np.hypot(*look.force) for look in looks])),
+            "stress": float(np.mean([np.linalg.norm(look.stress) for look in looks])),
+            "position": 1.0,
+            "shape": 1.0,
+            "energy": float(np.mean([look.energy for look in looks])),
+        }
+        self.bifurcation = self._bifurcation()
+
+    def walk(self, knobs: Knobs, length: float | None = None) -> Walk:
+        """A walk of the protocol. Raises Stopped."""
+        if self.stopping():
+            raise Stopped
+        return walk(self.start, knobs, self.plan.length if length is None else length)
+
+    def report(self, full: bool) -> dict[str, Any]:
+        """All that this start has to say; the checks of the reference only if ``full``."""
+        plan, setup = self.plan, self.start.setup
+        for solve in PEERS.values():
+            self.walk(Knobs(tolerance=0.1, solve=solve), 1)  # compiles
+        grid = list(self._grid())
+        result: dict[str, Any] = {
+            "grains": len(self.start.packing),
+            "length": plan.length,
+            "step": setup.solver.step,
+            "tolerance": setup.solver.tolerance,
+            "scales": self.scales,
+            "bifurcation": self.bifurcation,
+            "reference": self._described(),
+            "walks": [summary for summary, _ in grid],
+            "estimate": self._estimates([path for summary, path in grid if summary["step"] == 1.0]),
+            "budgets": [self._timed(knobs)[0] for knobs in self._budgets()],
+            "peers": {
+                name: [
+                    self._timed(Knobs(tolerance=t, solve=solve), 1)[0]
+                    for t in self.sweeps.peer_tolerances
+                ]
+                for name, solve in PEERS.items()
+            },
+            "stiffness": [self._stiffness(c) for c in self.sweeps.stiffness],
+            "overlap": self._overlap(),
+            "beyond": [self._beyond(t) for t in self.sweeps.beyond_tolerances if plan.beyond],
+            "sliced": self._sliced(),
+        }
+        if self.start.friction is not None:
+            result["friction"] = list(self._friction())
+        if full:
+            result["check"] = self._check()
+        return result
+
+    def errors(self, look: Look, exact: Look) -> dict[str, float]:
+        """How far one look is from another: what users read, relative; positions and shapes [R]."""
+        force = float(np.hypot(*(look.force - exact.force)))
+        stress = float(np.linalg.norm(look.stress - exact.stress))
+        position, shape = distances(look, exact)
+        raw = force, stress, position, shape, abs(look.energy - exact.energy)
+        scales = self.scales.values()
+        return {
+            name: float(value / scale) if scale > 0.0 else (0.0 if value == 0.0 else np.nan)
+            for name, value, scale in zip(QUANTITIES, raw, scales, strict=True)
+        }
+
+    def _places(self, step: float) -> Floats:
+        """Where a walk with that increment can be held against the reference, before any bifurcation."""
+        count = round(self.plan.length / step)
+        places: Floats = step * np.arange(1, count + 1, dtype=np.float64)
+        end = self.bifurcation
+        return places if end is None else places[places < end - 1e-9]
+
+    def _compared(self, path: Walk) -> list[dict[str, float]]:
+        found = []
+        for place in self._places(path.step):
+            look, exact = path.at(place), self.reference.at(place)
+            if look is not None and exact is not None:
+                found.append({"place": float(place), **self.errors(look, exact)})
+        return found
+
+    def _bifurcation(self) -> float | None:
+        """Where two tight walks part by more than ``APART``: of two tolerances; of two increments if it has no memory."""
+        sweeps = self.sweeps
+        tight = [Knobs(tolerance=TIGHT, step=sweeps.reference_step)]
+        if self.start.friction is None and self.start.setup.drag == 0.0:
+            tight += [
+                Knobs(tolerance=sweeps.reference_tolerance, step=2 * sweeps.reference_step),
+                *(
+                    Knobs(tolerance=TIGHT, step=step)
+                    for step in (*sweeps.steps, 1.0)
+                    if step <= 1.0
+                ),
+            ]
+        parted = []
+        for knobs in tight:
+            path = self.walk(knobs)
+            places = knobs.step * np.arange(1, len(path.looks) + 1)
+            apart = [
+                np.nan if exact is None else distances(look, exact)[0]
+                for look, exact in zip(path.looks, map(self.reference.at, places), strict=True)
+            ]
+            first = first_beyond(places.tolist(), apart, APART)
+            parted += [] if first is None else [first]
+        return min(parted) if parted else None
+
+    def _timed(self, knobs: Knobs, timings: int | None = None) -> tuple[dict[str, Any], Walk]:
+        """A walk several times over: its cost by the middle one, its errors."""
+        paths = [self.walk(knobs) for _ in range(timings or self.sweeps.timings)]
+        path = paths[0]
+        looks = path.looks
+        summary = {
+            "tolerance": knobs.tolerance,
+            "step": knobs.step,
+            "budget": knobs.max_iterations,
+            "repeats": knobs.repeats,
+            "increments": len(looks),
+            "seconds": median(path.seconds for path in paths),
+            "solving": median(path.solving for path in paths),
+            "iterations": float(np.mean([look.iterations for look in looks])),
+            "residual": float(np.median([look.residual for look in looks])),
+            "converged": float(np.mean([look.converged for look in looks])),
+            "errors": self._compared(path),
+        }
+        return summary, path
+
+    def _grid(self) -> Iterator[tuple[dict[str, Any], Walk]]:
+        sweeps = self.sweeps
+        plan = [(t, 1.0) for t in sweeps.tolerances]
+        plan += [(t, step) for step in sweeps.steps for t in sweeps.step_tolerances]
+        for tolerance, step in plan:
+            yield self._timed(Knobs(tolerance=tolerance, step=step))
+
+    def _budgets(self) -> Iterator[Knobs]:
+        for budget in self.sweeps.budgets:
+            yield Knobs(tolerance=1e-13, max_iterations=budget)
+
+    def _friction(self) -> Iterator[dict[str, Any]]:
+        """The lag of friction: increments, and relaxations with the friction frozen anew, at a tight tolerance."""
+        for repeats in (0, *self.sweeps.repeats):
+            for step in (1.0, *self.sweeps.steps):
+                yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)[0]
+
+    def _estimates(self, paths: list[Walk]) -> list[tuple[float, float]]:
+        """(residual times mean contact force, error of the force) of every increment before the bifurcation [k R]."""
+        found = []
+        for path in paths:
+            for place in self._places(path.step):
+                look, exact = path.at(place), self.reference.at(place)
+                if look is not None and exact is not None:
+                    error = float(np.hypot(*(look.force - exact.force)))
+                    found.append((look.residual * look.scale, error))
+        return found
+
+    def _stiffness(self, stiffness: float) -> dict[str, Any]:
+        """Force at every place with contacts of that stiffness; and what a walk costs at the scene's own tolerance."""
+        tight = self.walk(Knobs(tolerance=TIGHT, contact_stiffness=stiffness))
+        usual = Knobs(tolerance=self.start.setup.solver.tolerance, contact_stiffness=stiffness)
+        places = self._places(1.0)
+        if not len(places):
+            places = np.array([1.0])
+        looks = [look for look in map(tight.at, places) if look is not None]
+        walks = [self.walk(usual) for _ in range(self.sweeps.timings)]
+        return {
+            "stiffness": stiffness,
+            "force": [float(np.hypot(*look.force)) for look in looks],
+            "pressure": [0.5 * float(np.trace(look.stress)) for look in looks],
+            "solving": median(path.solving for path in walks),
+            "converged": float(np.mean([look.converged for look in tight.looks])),
+        }
+
+    def _overlap(self) -> dict[str, Any]:
+        """Where things stand at the start, with the contact law and with exact contacts."""
+        law = Walker(self.start, Knobs())
+        usual = law.rest()
+        exact = exact_increment(Walker(self.start, Knobs()))
+        return {
+            **self.errors(usual, exact),
+            "residual": exact.residual,
+            "aspect": float(np.mean(_aspects(usual.state))),
+        }
+
+    def _beyond(self, tolerance: float) -> dict[str, float]:
+        """A long walk as one draw of a distribution."""
+        path = self.walk(Knobs(tolerance=tolerance, max_iterations=20_000), self.plan.beyond)
+        force = np.array([np.hypot(*look.force) for look in path.looks])
+        drops = force_drops(force)
+        return {
+            "tolerance": tolerance,
+            "force": float(force.mean()),
+            "drop": float(drops.mean()) if len(drops) else 0.0,
+            "solving": path.solving,
+        }
+
+    def _sliced(self) -> bool:
+        """Whether an increment cut into slices, as a window does, comes out the same to the last bit."""
+        at_once = self.walk(Knobs(tolerance=1e-4), 1).looks
+        sliced = self.walk(Knobs(tolerance=1e-4, slice=SLICE), 1).looks
+        return all(np.array_equal(a.state, b.state) for a, b in zip(at_once, sliced, strict=True))
+
+    def _described(self) -> dict[str, Any]:
+        path = self.reference
+        return {
+            "tolerance": self.sweeps.reference_tolerance,
+            "step": path.step,
+            "residual": float(np.max([look.residual for look in path.looks])),
+            "converged": float(np.mean([look.converged for look in path.looks])),
+            "seconds": path.seconds,
+        }
+
+    def _check(self) -> dict[str, float | None]:
+        """The first increment of the reference by L-BFGS-B and Newton; and the slow twin's forces at the start."""
+        knobs = Knobs(tolerance=CHECKED, step=self.reference.step, solve=newton)
+        look = self.walk(knobs, self.reference.step).looks[0]
+        found = self.errors(look, self.reference.looks[0])
+        twin = None
+        setup, packing = self.start.setup, self.start.packing
+        if self.start.friction is None and setup.drag == 0.0 and len(packing) <= NO_TWIN:
+            setup.world.place(self.start.placement)
+            _, forces = reference.energy_and_forces(packing, setup.world.primitives()[0])
+            smooth = reference.to_smooth_chart(packing, forces)
+            twin = float(np.abs(smooth).max() / self.reference.looks[0].scale)
+        return {**found, "residual": look.residual, "twin_residual": twin}
+
+
+def distances(look: Look, other: Look) -> tuple[float, float]:
+    """(positions of the grains that bear force in ``other``, shapes of all): roots of the mean squares over common grains [R]."""
+    if np.array_equal(look.label, other.label):
+        difference, mask = look.state - other.state, other.bearing
+    else:
+        _, mine, its = np.intersect1d(look.label, other.label, return_indices=True)
+        difference, mask = look.state[:, mine] - other.state[:, its], other.bearing[its]
+    if not difference.shape[1]:
+        return 0.0, 0.0
+    apart = np.hypot(difference[0], difference[1])[mask]
+    return rms(apart) if len(apart) else 0.0, rms(np.linalg.norm(difference[2:], axis=0))
+
+
+def _aspects(state: Floats) -> Floats:
+    stretch = np.hypot(state[3], state[4])
+    aspects: Floats = (state[2] + stretch) / (state[2] - stretch)
+    return aspects

@@ -1,0 +1,222 @@
+"""From the jobs of one scene to what is reported: points of the plots, fronts, leads over peers, model errors, the estimate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from sandbox.studies.accuracy_math import (
+    coverage,
+    extrapolate,
+    factor,
+    front,
+    lead,
+    rms,
+    slope,
+)
+
+Job = Mapping[str, Any]
+
+QUANTITIES = ("force", "stress", "position", "shape", "energy")
+SHARE = 0.95  # of the increments in which the estimate is to be above the error
+FRAME = 1.0 / 60.0  # [s]
+
+
+@dataclass(frozen=True)
+class Dot:
+    """One choice of settings: what it costs, and how far off it is over all starts and places before a bifurcation."""
+
+    tolerance: float
+    step: float  # of the scene's own increment
+    budget: int
+    repeats: int
+    solving: float  # processor time of the minimiser for the way of one of the scene's own increments [s]
+    increment: float  # processor time of one whole increment [s]
+    iterations: float
+    residual: float
+    converged: float
+    places: int
+    force: float  # relative to the mean magnitude, rms
+    force_most: float
+    stress: float
+    position: float  # [R]
+    shape: float  # [R]
+    energy: float
+
+    @property
+    def point(self) -> tuple[float, float]:
+        """Cost and error of the force."""
+        return self.solving, self.force
+
+
+def dots(groups: Iterable[Sequence[Mapping[str, Any]]], length: float) -> list[Dot]:
+    """One dot for each choice of settings; ``groups`` holds what each start measured, all in the same order."""
+    return [_dot(walks, length) for walks in zip(*groups, strict=True)]
+
+
+def _dot(walks: Sequence[Mapping[str, Any]], length: float) -> Dot:
+    first = walks[0]
+    places = [place for walk in walks for place in walk["errors"]]
+    error = {name: rms([place[name] for place in places]) for name in QUANTITIES}
+    increments = sum(walk["increments"] for walk in walks)
+    return Dot(
+        tolerance=first["tolerance"],
+        step=first["step"],
+        budget=first["budget"],
+        repeats=first["repeats"],
+        solving=float(np.mean([walk["solving"] for walk in walks])) / length,
+        increment=sum(walk["seconds"] for walk in walks) / max(increments, 1),
+        iterations=float(np.mean([walk["iterations"] for walk in walks])),
+        residual=float(np.median([walk["residual"] for walk in walks])),
+        converged=float(np.mean([walk["converged"] for walk in walks])),
+        places=len(places),
+        force_most=max((place["force"] for place in places), default=math.nan),
+        **error,
+    )
+
+
+def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
+    """All about one scene. A scene in which nothing relaxes has its own few numbers."""
+    first = jobs[0]
+    if "contact" in first:
+        return _contact(first)
+    length = float(first["length"])
+    grid = dots([job["walks"] for job in jobs], length)
+    peers = {name: dots([job["peers"][name] for job in jobs], length) for name in first["peers"]}
+    best = _front(grid)
+    default = default_dot(grid, first["tolerance"])
+    summary: dict[str, Any] = {
+        "grains": first["grains"],
+        "starts": len(jobs),
+        "length": length,
+        "increment": first["step"],
+        "tolerance": first["tolerance"],
+        "scales": [job["scales"] for job in jobs],
+        "bifurcations": [job["bifurcation"] for job in jobs],
+        "reference": _reference(jobs),
+        "check": first["check"],
+        "dots": [asdict(dot) for dot in grid],
+        "front": [asdict(dot) for dot in best],
+        "default": asdict(default),
+        "frames": default.increment / FRAME,
+        "sliced": all(job["sliced"] for job in jobs),
+        "budgets": [asdict(dot) for dot in dots([job["budgets"] for job in jobs], length)],
+        "peers": {name: [asdict(dot) for dot in found] for name, found in peers.items()},
+        "lead": {name: _lead(best, found) for name, found in peers.items()},
+        "stiffness": stiffness([job["stiffness"] for job in jobs]),
+        "overlap": _overlap(jobs),
+        "estimate": estimate([job["estimate"] for job in jobs]),
+        "beyond": beyond([job["beyond"] for job in jobs]),
+    }
+    if "friction" in first:
+        found = dots([job["friction"] for job in jobs], length)
+        summary["friction"] = [asdict(dot) for dot in found]
+    return summary
+
+
+def default_dot(grid: Sequence[Dot], tolerance: float) -> Dot:
+    """The dot of the scene's own increment and of the tolerance nearest to its own."""
+    own = [dot for dot in grid if dot.step == 1.0]
+    return min(own, key=lambda dot: abs(math.log(dot.tolerance / tolerance)))
+
+
+def _front(grid: Sequence[Dot]) -> list[Dot]:
+    return [grid[k] for k in front([dot.point for dot in grid])]
+
+
+def _lead(ours: Sequence[Dot], theirs: Sequence[Dot]) -> dict[str, float]:
+    least, middle = lead([dot.point for dot in ours], [dot.point for dot in _front(theirs)])
+    return {"least": least, "middle": middle}
+
+
+def _reference(jobs: Sequence[Job]) -> dict[str, float]:
+    found = [job["reference"] for job in jobs]
+    return {
+        "tolerance": found[0]["tolerance"],
+        "step": found[0]["step"],
+        "residual": max(one["residual"] for one in found),
+        "converged": float(np.mean([one["converged"] for one in found])),
+        "seconds": sum(one["seconds"] for one in found),
+    }
+
+
+def _overlap(jobs: Sequence[Job]) -> dict[str, float]:
+    """Root of the mean squares over starts."""
+    return {name: rms([job["overlap"][name] for job in jobs]) for name in jobs[0]["overlap"]}
+
+
+def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
+    """Model error against C → ∞, of the force and of the pressure; what it costs; the powers of C that both follow."""
+    found: dict[str, Any] = {}
+    values = [float(row["stiffness"]) for row in groups[0]]
+    for name in ("force", "pressure"):
+        errors: list[list[float]] = [[] for _ in values]
+        doubts = []
+        for rows in groups:
+            curves = np.array([row[name] for row in rows])
+            for curve in curves.T:
+                limit, doubt = extrapolate(values, curve.tolist())
+                scale = float(np.mean(np.abs(curves[-1])))
+                doubts.append(doubt / scale if scale > 0.0 else math.nan)
+                for error, value in zip(errors, curve, strict=True):
+                    error.append((value - limit) / scale if scale > 0.0 else math.nan)
+        found[name] = [rms(error) for error in errors]
+        found[f"{name}_doubt"] = rms(doubts)
+    solving = [float(np.mean([rows[k]["solving"] for rows in groups])) for k in range(len(values))]
+    middle = [k for k, value in enumerate(values) if value <= 200.0]
+    return {
+        "stiffness": values,
+        **found,
+        "solving": solving,
+        "error_power": slope([values[k] for k in middle], [found["force"][k] for k in middle]),
+        "cost_power": slope(values, solving),
+    }
+
+
+def estimate(groups: Sequence[Sequence[Sequence[float]]]) -> dict[str, float]:
+    """error ≤ A × residual × mean contact force: A from every second increment, and how often it then holds for the others."""
+    found = np.array([pair for group in groups for pair in group]).reshape(-1, 2)
+    learnt, tried = found[::2], found[1::2]
+    amount = factor(learnt[:, 0], learnt[:, 1], SHARE)
+    return {
+        "factor": amount,
+        "coverage": coverage(tried[:, 0], tried[:, 1], amount),
+        "increments": len(tried),
+        "median_ratio": float(np.median(found[:, 1] / found[:, 0])) if len(found) else math.nan,
+    }
+
+
+def beyond(groups: Sequence[Sequence[Mapping[str, float]]]) -> list[dict[str, float]]:
+    """Mean force and mean drop over seeds, with standard deviations, for each tolerance; against the tightest, seed by seed."""
+    rows = []
+    for walks in zip(*groups, strict=True):
+        tightest = [group[-1]["force"] for group in groups]
+        force = np.array([walk["force"] for walk in walks])
+        drop = np.array([walk["drop"] for walk in walks])
+        several = len(force) > 1
+        rows.append(
+            {
+                "tolerance": walks[0]["tolerance"],
+                "force": float(force.mean()),
+                "force_spread": float(force.std(ddof=1)) if several else math.nan,
+                "drop": float(drop.mean()),
+                "drop_spread": float(drop.std(ddof=1)) if several else math.nan,
+                "shift": float(np.mean(force - tightest) / np.mean(tightest)),
+                "solving": float(np.mean([walk["solving"] for walk in walks])),
+            }
+        )
+    return rows
+
+
+def _contact(job: Job) -> dict[str, Any]:
+    return {
+        "grains": job["grains"],
+        "starts": 1,
+        "length": job["length"],
+        "contact": job["contact"],
+        "halvings": job["halvings"],
+    }
