@@ -17,8 +17,9 @@ from sandbox.frame import Frame
 
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
 SWATCH = 26.0  # of the packing's curve
-CAPTION_LINES = 2  # at the foot of a canvas
-FOOT_SHARE = 0.14  # of a canvas' height, for them, at most
+CAPTION_LINES = 2  # at the foot of a canvas, and one more on a narrow one
+NARROW = 330.0  # at scale 1 [px]
+FOOT_SHARE = 0.15  # of a canvas' height, for them, at most
 MOST_LINES = 3  # on a plate
 COVERED = 0.4  # of a canvas' height, by plates, at most
 FRESH = 40  # an event is spoken of for so many increments
@@ -27,7 +28,8 @@ FRESH = 40  # an event is spoken of for so many increments
 def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
     """A canvas cut into its strip, what is left for the grains, and a foot for words, of no height on a small canvas."""
     strip = min(round(STRIP * type_.scale), canvas.height // 4)
-    foot = CAPTION_LINES * type_.height(BODY) + round(8 * type_.scale)
+    lines = CAPTION_LINES + (canvas.width < NARROW * type_.scale)
+    foot = lines * type_.height(BODY) + round(6 * type_.scale)
     if foot > FOOT_SHARE * canvas.height:
         foot = 0
     top, bottom = canvas.top + strip, canvas.bottom - foot
@@ -88,7 +90,7 @@ def draw_caption(painter: Painter, foot: pygame.Rect, notices: Sequence[str]) ->
     room = foot.width - round(20 * painter.scale)
     lines: list[str] = []
     for notice in reversed(notices):
-        free = CAPTION_LINES - len(lines)
+        free = int(foot.height // line) - len(lines)
         if free:
             lines = [*_at_most(type_, type_.wrapped(notice, BODY, room), free, room), *lines]
     y = foot.centery - 0.5 * (len(lines) - 1) * line

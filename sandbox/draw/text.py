@@ -6,7 +6,7 @@ The font's digits all have one width, so a number that counts does not make its 
 from __future__ import annotations
 
 from collections import OrderedDict
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import pygame
@@ -42,6 +42,12 @@ def _font(size: int, bold: bool) -> pygame.font.Font:
     return pygame.font.Font(str(font_path(bold)), size)
 
 
+@lru_cache(4 * _CACHE_SIZE)
+def _width(text: str, size: int, bold: bool) -> int:
+    """Measuring takes longer than one thinks, and a picture asks for the same hundred widths again and again."""
+    return _font(size, bold).size(text)[0]
+
+
 def page_scale(
     scale: float, size: tuple[int, int], designed: tuple[int, int] = (480, 360)
 ) -> float:
@@ -70,7 +76,7 @@ class Type:
 
     def width(self, text: str, size: float, bold: bool = False) -> int:
         """Width of a text [px]."""
-        return _font(self.pixels(size), bold).size(text)[0]
+        return _width(text, self.pixels(size), bold)
 
     def shortened(self, text: str, size: float, width: float, bold: bool = False) -> str:
         """The text, or as much of it as fits with an ellipsis; empty if not even that fits."""
