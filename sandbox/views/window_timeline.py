@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 SPEEDS = (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, math.inf)
 SPEED_NAMES = ("1/8", "1/4", "1/2", "1", "2", "4", "max")
 PAGE = 10  # increments that a page key goes
+PATIENCE = 0.5  # with an increment that was asked for [s]
 BAR = "time/bar"
 GAP, SPEED_WIDTH, SPEED_SHARE = 8.0, 150.0, 0.3  # at scale 1 [px]; and of the line's width at most
 
@@ -39,6 +40,7 @@ class Timeline(Silent):
         self.speed = len(SPEEDS) - 1  # index into SPEEDS
         self._wish: int | None = None  # increment to go to, not sent yet
         self._asked: int | None = None  # increment on its way
+        self._sent = (0.0, 0)  # when [s], and the snapshot's serial then
         self._dragging = False
         self._hover = ""
         self._pointer = (-1, -1)
@@ -158,15 +160,16 @@ class Timeline(Silent):
 
     def tick(self, now: float) -> bool:
         """Send where to go, once a picture."""
-        del now
-        frame = self.frame
-        if frame is not None and frame.increment == self._asked:
+        frame, serial = self.frame, self.app.run.snapshot.serial
+        # Of a long run not every increment is kept: then the solver goes to the nearest before it.
+        near = serial != self._sent[1] and now - self._sent[0] > PATIENCE
+        if frame is not None and (frame.increment == self._asked or near):
             self._asked = None
         if self._wish is None:
             return False
         if self._asked is None or self._wish != self._asked:
             self.app.send(Recall(self._wish))
-            self._asked = self._wish
+            self._asked, self._sent = self._wish, (now, serial)
         self._wish = None
         return True
 

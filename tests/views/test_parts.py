@@ -197,7 +197,8 @@ def grain_place(desk: Desk, index: int) -> tuple[float, float]:
 def test_click_looks_at_a_grain_and_escape_ends_it(desk: Desk) -> None:
     desk.click(grain_place(desk, 0))
     frame = desk.app.panes()[0][0]
-    assert desk.app.inspector.label == int(frame.label[0])
+    assert desk.app.inspector.inspection is not None
+    assert desk.app.inspector.inspection.label == int(frame.label[0])
     desk.app.tick()
     facts = [
         place.control for place in desk.app.panel._places.all if isinstance(place.control, Fact)
@@ -259,8 +260,8 @@ def test_next_grain_in_contact_goes_along_the_strongest(desk: Desk) -> None:
 def test_grain_that_has_left_is_looked_at_no_more(desk: Desk) -> None:
     desk.click(grain_place(desk, 0))
     still = desk.session._still
-    names = ("x", "y", "p", "q1", "q2", "rest_radius", "poisson_ratio", "label", "pressure")
-    names += ("stress_difference",)
+    names = ["x", "y", "p", "q1", "q2", "rest_radius", "poisson_ratio", "label", "pressure"]
+    names.append("stress_difference")
     fewer = {name: getattr(still, name)[1:] for name in names}
     desk.session._still = replace(
         still, motion=still.motion[:, 1:], contacts=Contacts.none(), **fewer
