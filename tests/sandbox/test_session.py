@@ -162,3 +162,24 @@ def test_grains_that_leave_are_counted_and_gone() -> None:
     assert out > 0
     assert session.frame().grains + out == first
     assert session.history[-1].grains_out == out
+
+
+@pytest.mark.parametrize("make", [intruder, lambda: hopper(orifice=0.5)])
+def test_a_frame_says_how_far_each_grain_is_from_balance(make: Callable[[], Session]) -> None:
+    session = make()
+    drag(session, Change("friction", 0.0), Protocol(True))
+    run(session, 12)
+    frame = session.frame()
+    pairs, bodies = session.run.engine.contacts()
+    force = np.zeros((2, frame.grains))
+    for axis, (f, g) in enumerate(((pairs.fx, bodies.fx), (pairs.fy, bodies.fy))):
+        np.add.at(force[axis], pairs.i, f)
+        np.add.at(force[axis], pairs.j, -f)
+        np.add.at(force[axis], bodies.grain, g)
+    assert np.allclose(np.hypot(*force), frame.residual_force, rtol=1e-6, atol=1e-12)
+    assert frame.residual_force.max() > 0.0
+    touching = frame.contacts
+    assert np.array_equal(touching.rigid, touching.j < 0)
+    inside = touching.j >= 0
+    assert np.array_equal(touching.x0, frame.x[touching.i])
+    assert np.allclose(touching.x1[inside], frame.x[touching.j[inside]])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from sandbox.commands import Change, Grab, Move, Protocol, Recall, Undo
 from sandbox.frame import Frame
 from sandbox.session import Session
@@ -17,12 +19,15 @@ def test_a_scrub_holds_and_play_goes_on_from_there() -> None:
         assert seen is not None
         return seen
 
+    def stands_at(increment: int) -> bool:
+        return frame().increment == increment
+
     solver.start()
     solver.submit(Protocol(True))
     wait_until(lambda: solver.snapshot.phase == "running" and frame().increment >= 12)
     for increment in (9, 3, 6):
         solver.submit(Recall(increment))
-        wait_until(lambda n=increment: frame().increment == n)
+        wait_until(partial(stands_at, increment))
         assert solver.paused
         assert frame().last_kept >= 12
         assert frame().protocol
