@@ -38,7 +38,7 @@ from sandbox.past import OLD_RUN_BYTES, Moment, Past, Start
 from sandbox.run import Run
 from sandbox.scene_file import Made, SceneFile, put_into, read_scene
 from scenes import registry
-from scenes.scene import Check, Ingredients, Scene, Values
+from scenes.scene import Check, Ingredients, Scene, Setup, Values
 from scenes.text import message
 
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
@@ -103,11 +103,20 @@ class Session:
             put_into(setup, self._file)
         bodies = keep_bodies(setup.world)
         start = Start(setup.packing.copy(), setup, bodies, self.settings, self._file)
-        run = Run(self.scene, self.settings, self.packing, self.seed, setup)
-        if self._file is not None and run.failed:
-            raise InputError(f"{self._file.name}: its grains cannot be relaxed")
-        self._start, self._run = start, run
+        self._start, self._run = start, self._first_run(setup)
         report("ready", 1.0)
+
+    def _first_run(self, setup: Setup) -> Run:
+        """The run of what was just built. Raises InputError where a file has brought what cannot be run."""
+        if self._file is None:
+            return Run(self.scene, self.settings, self.packing, self.seed, setup)
+        try:
+            run = Run(self.scene, self.settings, self.packing, self.seed, setup)
+        except InputError as error:
+            raise InputError(f"{self._file.name}: {error}") from None
+        if run.failed:
+            raise InputError(f"{self._file.name}: its grains cannot be relaxed")
+        return run
 
     def _compile(self, terms: Ingredients) -> None:
         report = self._progress or _silent

@@ -47,6 +47,6 @@ def _value(value: object) -> str:
         return str(value)
     if isinstance(value, float) and math.isfinite(value):
         return repr(value)
-    if isinstance(value, Sequence):
+    if isinstance(value, (list, tuple)):
         return f"[{', '.join(_value(v) for v in value)}]"
     raise ValueError(f"{value!r} has no place in a file of this program")

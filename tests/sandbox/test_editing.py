@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,17 +38,17 @@ from sandbox.replay import replay
 from sandbox.run import TOO_TIGHT
 from sandbox.session import Session
 
-DENSE = {"grains": 120, "intruder_radius": 2.0}
+DENSE: dict[str, Any] = {"grains": 120, "intruder_radius": 2.0}
 FAR = 100.0  # [R] radius of a brush that reaches everything
 
 
-def built(scene: str = "workshop", packing: str = "mixed", **values: object) -> Session:
+def built(scene: str = "workshop", packing: str = "mixed", **values: Any) -> Session:
     session = Session(scene, packing, 1, values)
     session.build()
     return session
 
 
-def empty(**values: object) -> Session:
+def empty(**values: Any) -> Session:
     return built(grains=0, **values)
 
 
@@ -489,7 +490,7 @@ edits = st.one_of(
 def test_any_edits_leave_everything_whole(
     scene: tuple[str, int], friction: float, commands: list[Command]
 ) -> None:
-    values = {"intruder_radius": 2.0} if scene[0] == "intruder" else {}
+    values: dict[str, Any] = {"intruder_radius": 2.0} if scene[0] == "intruder" else {}
     session = built(scene[0], grains=scene[1], friction=friction, **values)
     for command in commands:
         do(session, command)
