@@ -70,7 +70,10 @@ def card_layout(page: TourPage, type_: Type, width: int) -> CardLayout:
     scale = type_.scale
     pad, tall = round(PAD * scale), round(BUTTON * scale)
     y = pad + type_.height(HEADING, bold=True)
-    y += sum(type_.height(size, bold) + above for _, size, bold, above, _ in card_lines(page, type_, width))
+    y += sum(
+        type_.height(size, bold) + above
+        for _, size, bold, above, _ in card_lines(page, type_, width)
+    )
     y += round(10 * scale)
     onward = type_.width(page.onward, BODY, bold=True) + round(28 * scale)
     back = type_.width(words.TOUR_BACK, BODY, bold=True) + round(24 * scale)
@@ -115,7 +118,9 @@ def draw_tour_card(
         if task and not marked:
             marked = True
             _draw_mark(painter, rect.left + pad, y + height // 2, page.done)
-        painter.text(text, rect.left + pad + (mark if task else 0), y + height // 2, size=size, bold=bold)
+        painter.text(
+            text, rect.left + pad + (mark if task else 0), y + height // 2, size=size, bold=bold
+        )
         y += height
     _draw_dots(painter, rect.left + pad, lowest + round(0.5 * BUTTON * scale), page)
     for name, text in ((NEXT, page.onward), (BACK, words.TOUR_BACK)):
@@ -141,9 +146,14 @@ def _draw_mark(painter: Painter, x: float, y: float, done: bool) -> None:
         return
     painter.disc(centre, y, radius, theme.good)
     dark = theme.panel
-    painter.line((centre - 3.5 * scale, y), (centre - 1.0 * scale, y + 3.0 * scale), 2.2 * scale, dark)
     painter.line(
-        (centre - 1.0 * scale, y + 3.0 * scale), (centre + 4.0 * scale, y - 3.5 * scale), 2.2 * scale, dark
+        (centre - 3.5 * scale, y), (centre - 1.0 * scale, y + 3.0 * scale), 2.2 * scale, dark
+    )
+    painter.line(
+        (centre - 1.0 * scale, y + 3.0 * scale),
+        (centre + 4.0 * scale, y - 3.5 * scale),
+        2.2 * scale,
+        dark,
     )
 
 
@@ -186,5 +196,6 @@ def _draw_close(painter: Painter, rect: pygame.Rect, *, ring: bool, hover: bool)
         )
     x, y, arm = *rect.center, 5.5 * scale
     for way in (1.0, -1.0):
-        painter.line((x - arm, y - way * arm), (x + arm, y + way * arm), 2.0 * scale, theme.soft_text)
-
+        painter.line(
+            (x - arm, y - way * arm), (x + arm, y + way * arm), 2.0 * scale, theme.soft_text
+        )

@@ -38,6 +38,7 @@ __all__ = [
     "question",
     "say",
     "title",
+    "tour_text",
     "unit",
 ]
 
@@ -48,7 +49,7 @@ LENGTH_UNIT = "R"
 PERCENT = "%"
 
 BROKEN = frozenset(
-    {"not finite", "collapsed"}
+    {"not finite", "collapsed", "sunk"}
 )  # ends of a relaxation that leave no picture to believe
 
 BUTTONS = Section("buttons")
@@ -127,6 +128,12 @@ def first_sentence(text: str) -> str:
 def has_tour(scene: str) -> bool:
     """Is there a guided tour of a scene?"""
     return language.find("tours", scene) is not None
+
+
+def tour_text(scene: str, step: str, part: str) -> str:
+    """What a step of a tour says: ``part`` is "say", "do" or "why"; nothing where it has no such part."""
+    found = language.find("tours", scene, step, part)
+    return "" if found is None else str(found)
 
 
 def help_groups() -> list[tuple[str, list[tuple[str, str]]]]:

@@ -17,7 +17,6 @@ from sandbox.autosave import Leftover
 from sandbox.commands import Change, Command
 from sandbox.draw import words
 from sandbox.draw.cards import draw_error
-from sandbox.draw.menu_layout import KEYS, LANGUAGE, THEME
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
 from sandbox.draw.views import view_after
@@ -25,6 +24,7 @@ from sandbox.draw.warmup import Warmup
 from sandbox.scene_file import SceneFile
 from sandbox.views.solver_thread import Snapshot
 from sandbox.views.window_arrows import Arrows
+from sandbox.views.window_begin import Beginnings
 from sandbox.views.window_brush import Brush
 from sandbox.views.window_curves import CurvesSection
 from sandbox.views.window_display import FRAMES, Rate, natural_scale, open_display, save_picture
@@ -46,6 +46,7 @@ from sandbox.views.window_run import Run
 from sandbox.views.window_settings import ParameterSection, Settings
 from sandbox.views.window_sound import Sound
 from sandbox.views.window_timeline import Timeline
+from sandbox.views.window_tour import Guide
 from scenes.text import message
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
@@ -126,7 +127,10 @@ class App:
         self.recorder = Recorder()
         self.sound = Sound()
         self.menu = Menu()
+        self.beginnings = Beginnings(self)
+        self.guide = Guide(self)
         self.focus = Focus(self.handle)
+        self.focus.busy = lambda: any(frame.busy for frame, _, _ in self.panes())
         self.settings = Settings(self)
         self.timeline = Timeline(self)
         self.inspector = Inspector(self)
@@ -136,7 +140,12 @@ class App:
         self.panel = Panel(self, folded={"solver", "files", "looks"})
         self.panel.sections += [GeneralSection(self), self.inspector, self.brush, *own]
         self.panel.sections += [CurvesSection(self), FilesSection(self), LooksSection(self)]
-        self.focus.groups = [self.arrows.stops, self.panel.stops, self.timeline.stops]
+        self.focus.groups = [
+            self.arrows.stops,
+            self.guide.stops,
+            self.panel.stops,
+            self.timeline.stops,
+        ]
         # While a scene runs they see events first, in this order.
         self.parts: list[Part] = [
             self.panel,
@@ -145,6 +154,7 @@ class App:
             self.brush,
             self.inspector,
             self.arrows,
+            self.guide,
             self.focus,
         ]
         self.arrange()
@@ -390,7 +400,7 @@ class App:
         if event.type == pygame.MOUSEMOTION:
             self.menu.hover(event.pos)
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            self._choose(self.menu.click(event.pos))
+            self.beginnings.take(self.menu.click(event.pos))
 
     def _mouse_on_canvas(self, event: pygame.event.Event) -> None:
         panes, reach = self.panes(), REACH * self.renderer.scale
@@ -459,9 +469,9 @@ class App:
                 self.show_menu = False
                 self.run.go_on()
         elif (packing := self._packing(action)) is not None:
-            self._choose(Choice(packing=packing))
+            self.beginnings.take(Choice(packing=packing))
         else:
-            self._choose(self.menu.key(action))
+            self.beginnings.take(self.menu.key(action))
 
     def _act_on_run(self, action: Action) -> None:
         frame = self.run.snapshot.frame
@@ -553,23 +563,9 @@ class App:
         self.mouse.release(self.send)
         self.run.hold()
         self.show_menu, self.show_help = True, False
+        self.beginnings.look_for_leftovers()
         self.menu.open(self.run.scene if self.run.exists else "")
         self._dirty = True
-
-    def _choose(self, choice: Choice) -> None:
-        if choice.packing is not None:
-            self.run.packing = choice.packing
-        if choice.what == LANGUAGE:
-            self.act(Action.LANGUAGE)
-        elif choice.what == THEME:
-            self.act(Action.THEME)
-        elif choice.what == KEYS:
-            self.show_help = True
-        if choice.scene is not None:
-            try:
-                self.start(choice.scene)
-            except InputError as error:
-                self.toast(words.say(message(error)))
 
     def speak(self, code: str) -> None:
         """Another language from now on."""

@@ -28,7 +28,8 @@ class Drawer:
         """Where it is in the window [px]; of no width when it is not to be seen."""
         own = self.app.renderer.layout.panel
         if own.width or not self.over:
-            return own
+            taken = self.app.guide.docked  # the card of a tour stands above it
+            return pygame.Rect(own.left, own.top + taken, own.width, own.height - taken)
         width, _ = self.app.renderer.size
         wide = round(min(PANEL * self.app.renderer.scale, WIDEST * width))
         return pygame.Rect(width - wide, 0, wide, self.app.renderer.layout.status.top)

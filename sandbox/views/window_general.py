@@ -30,6 +30,7 @@ ACTIONS = {
     "new": Action.NEW_SEED,
     "menu": Action.MENU,
     "help": Action.HELP,
+    "tour": Action.TOUR,
     "fold": Action.FOLD,
 }
 
@@ -61,11 +62,16 @@ class GeneralSection:
         )
         controls: list[Control] = [
             Row(
-                (self._button("menu"), self._button("help"), self._button("fold", sign="›")),
-                (1.4, 1.4, 0.8),
+                (
+                    self._button("menu"),
+                    self._button("tour", on=self.app.guide.on),
+                    self._button("help"),
+                    self._button("fold", sign="›"),
+                ),
+                (1.4, 1.2, 1.4, 0.8),
             )
         ]
-        if len(packings) > 1:
+        if len(packings) > 1 and not self.app.run.comparing:
             controls.append(
                 Choice(
                     "general/packing",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,7 +60,9 @@ class Menu:
         self.packings = tuple(kinds)
         self.chosen = START
         self.scroll = 0
-        self.resume = ""  # what was left unfinished, as it is told; nothing if nothing was
+        self.resume: Callable[[], str] | None = (
+            None  # tells what was left unfinished, if anything was
+        )
         self._files: tuple[SceneHere, ...] = ()
         self._places: MenuLayout | None = None
         self._pointed = ""  # what the mouse is over
@@ -110,7 +113,7 @@ class Menu:
             Chip(THEME, words.DARK if theme == "dark" else words.LIGHT),
             Chip(KEYS, words.HELP_TITLE),
         ]
-        return Contents(tuple(cards), tuple(chips), self.resume)
+        return Contents(tuple(cards), tuple(chips), self.resume() if self.resume else "")
 
     # -- what a person does --
 
