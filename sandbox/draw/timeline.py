@@ -65,7 +65,7 @@ def draw_bar(painter: Painter, bar: Bar, pointer: float | None) -> None:
     text = words.INCREMENT.format(increment=increment)
     if found is not None:
         text += " · " + words.say(found.text)
-    _draw_plate(painter, bar, text, pointer)
+    draw_plate(painter, text, pointer, bar.rect.top)
 
 
 def _draw_event(painter: Painter, x: float, y: float, kind: str, colour: int) -> None:
@@ -81,7 +81,8 @@ def _draw_event(painter: Painter, x: float, y: float, kind: str, colour: int) ->
     painter.hull(places, 0.0, colour)
 
 
-def _draw_plate(painter: Painter, bar: Bar, text: str, x: float) -> None:
+def draw_plate(painter: Painter, text: str, x: float, bottom: float) -> None:
+    """A few words over what the pointer is at."""
     theme, scale, type_ = painter.theme, painter.scale, painter.type
     width = painter.surface.get_width()
     text = type_.shortened(text, SMALL, width - round(30 * scale))
@@ -91,7 +92,7 @@ def _draw_plate(painter: Painter, bar: Bar, text: str, x: float) -> None:
         type_.width(text, SMALL) + round(20 * scale),
         type_.height(SMALL) + round(8 * scale),
     )
-    plate.midbottom = (round(x), bar.rect.top - round(2 * scale))
+    plate.midbottom = (round(x), round(bottom - 2 * scale))
     plate.clamp_ip(painter.everything)
     painter.box(plate, theme.panel, radius=6 * scale, edge=theme.soft_text, edge_width=1.5 * scale)
     painter.text(text, *plate.center, size=SMALL, anchor="centre")

@@ -35,6 +35,7 @@ class Focus(Silent):
         self.name = CANVAS
         self.shown = False
         self.groups: list[Stops] = []  # in the order of Tab
+        self.busy: Callable[[], bool] = lambda: False  # does the solver lag behind?
         self._handle = handle  # where a repeated key goes
         self._index = 0
         self._held: pygame.event.Event | None = None
@@ -109,6 +110,8 @@ class Focus(Silent):
         self._now = now
         if self._held is None or now < self._due:
             return False
+        if self._held.key not in REPEATING and self.busy():
+            return False  # increments that are asked for faster than they can be made pile up
         self._due = now + REPEAT
         self._handle(self._held)
         return True

@@ -66,7 +66,10 @@ class Inspector(Silent):
         self.app.redraw(True)
 
     def next_in_contact(self) -> None:
-        """Along the strongest contact to a grain not yet looked at, else to the one looked at longest ago."""
+        """Along the strongest contact to a grain not yet looked at, else to the one looked at longest ago.
+
+        From a grain that touches no other: to the nearest.
+        """
         found, frame = self.inspection, self.frame
         if frame is None or not frame.grains:
             return
@@ -74,20 +77,27 @@ class Inspector(Silent):
             self.look(self._first(frame))
             return
         near = [touch.label for touch in found.touches if touch.label is not None]
-        if not near:
-            self.app.toast(words.NO_CONTACTS)
-            return
         new = [label for label in near if label not in self._seen]
-        self.look(new[0] if new else min(near, key=self._seen.index))
+        if new:
+            self.look(new[0])
+        elif near:
+            self.look(min(near, key=self._seen.index))
+        else:
+            self.look(self._nearest(frame, found.x, found.y))
 
     def _first(self, frame: Frame) -> int:
         """The grain nearest to the first handle, or to the middle."""
         x0, y0, x1, y1 = frame.bounds
-        x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
         if frame.handles:
-            x, y = frame.handles[0].x, frame.handles[0].y
+            return self._nearest(frame, frame.handles[0].x, frame.handles[0].y)
+        return self._nearest(frame, 0.5 * (x0 + x1), 0.5 * (y0 + y1))
+
+    def _nearest(self, frame: Frame, x: float, y: float) -> int:
+        """The nearest grain to a place [R] that was not looked at yet; the nearest of all if there is no other."""
         away = np.hypot(frame.x - x, frame.y - y)
-        return int(frame.label[int(np.nanargmin(np.where(np.isfinite(away), away, np.inf)))])
+        away = np.where(np.isfinite(away), away, np.inf)
+        new = np.where(np.isin(frame.label, self._seen), np.inf, away)
+        return int(frame.label[int(np.argmin(new if np.isfinite(new).any() else away))])
 
     # -- what a person does --
 
@@ -199,11 +209,10 @@ def _unbalanced(found: Inspection) -> str:
     """The sum of all forces, and what part of the contact forces that is."""
     if not math.isfinite(found.unbalanced):
         return "—"
-    text = f"{found.unbalanced:.1e}".replace("e-0", "e−").replace("e+0", "e")
-    text = text.replace(".", words.decimal_sign()).replace("e-", "e−") + " k R"
-    total = found.total_force
-    if total > 0.0:
-        text += f" ({shown(float(f'{100.0 * found.unbalanced / total:.2g}'))} %)"
+    text = f"{shown(float(f'{found.unbalanced:.2g}'))} k R"
+    if found.total_force > 0.0:
+        share = 100.0 * found.unbalanced / found.total_force
+        text += f" ({shown(float(f'{share:.2g}'))} %)"
     return text
 
 

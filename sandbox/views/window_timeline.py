@@ -11,7 +11,7 @@ import pygame
 from sandbox.commands import Recall, Redo, Undo
 from sandbox.draw import words
 from sandbox.draw.painter import Painter
-from sandbox.draw.timeline import Bar, draw_bar
+from sandbox.draw.timeline import Bar, draw_bar, draw_plate
 from sandbox.draw.widgets import Button, Choice, Option, Place, Places, parts_of
 from sandbox.draw.widgets_look import Attention, draw_control, draw_ring
 from sandbox.frame import Frame
@@ -77,7 +77,10 @@ class Timeline(Silent):
             (
                 Place(Button("time/play", "▶" if paused else "⏸", help=words.PLAY_HELP), play),
                 Place(Button("time/step", "⏭", help=words.STEP_HELP), step),
-                Place(Choice("time/speed", "", options, SPEED_NAMES[self.speed]), speed),
+                Place(
+                    Choice("time/speed", "", options, SPEED_NAMES[self.speed], words.SPEED_HELP),
+                    speed,
+                ),
             ),
             line.height,
         )
@@ -263,7 +266,10 @@ class Timeline(Silent):
         painter.fill(pygame.Rect(line.left, line.top, line.width, thin), painter.theme.hairline)
         focus = self.app.focus.ring
         for place in self.places().all:
+            control = place.control
             draw_control(painter, place, Attention(focus, self._hover))
+            if control.help and control.name in (self._hover, focus):
+                draw_plate(painter, control.help, place.rect.centerx, place.rect.top)
         at = self._pointer[0] if self._hover == BAR or self._dragging else None
         draw_bar(painter, bar, at)
         if focus == BAR:

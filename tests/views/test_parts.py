@@ -160,6 +160,18 @@ def test_speed_has_its_keys_and_limits(desk: Desk, monkeypatch: pytest.MonkeyPat
     assert limits[:6] == [240.0, 120.0, 60.0, 30.0, 15.0, 7.5]
 
 
+def test_held_step_waits_for_the_solver(desk: Desk) -> None:
+    desk.session.slice_time = 0.08
+    desk.key(pygame.K_a)
+    desk.post(pygame.KEYDOWN, key=pygame.K_s, unicode="s", mod=0)
+    desk.until(lambda: increment(desk) >= 4)
+    desk.post(pygame.KEYUP, key=pygame.K_s, mod=0)
+    done = increment(desk)
+    for _ in range(60):
+        desk.app.tick()
+    assert increment(desk) <= done + 4  # not the twenty a second of the key
+
+
 def test_play_and_step_by_mouse(desk: Desk) -> None:
     play, step, faster = (place.rect for place in desk.app.timeline.places().all)
     desk.click(play.center)
@@ -255,6 +267,19 @@ def test_next_grain_in_contact_goes_along_the_strongest(desk: Desk) -> None:
     before = desk.app.inspector.label
     desk.key(pygame.K_RETURN)
     assert desk.app.inspector.label != before
+
+
+def test_from_a_grain_that_touches_nothing_to_the_nearest(desk: Desk) -> None:
+    frame = desk.app.panes()[0][0]  # nobody knows its contacts' grains: there are none
+    desk.key(pygame.K_i)
+    seen = []
+    for _ in range(4):
+        assert desk.app.inspector.inspection is not None
+        seen.append(desk.app.inspector.inspection)
+        desk.key(pygame.K_i)
+    assert len({found.label for found in seen}) == 4
+    away = np.hypot(frame.x - seen[0].x, frame.y - seen[0].y)
+    assert int(frame.label[np.argsort(away)[1]]) == seen[1].label
 
 
 def test_grain_that_has_left_is_looked_at_no_more(desk: Desk) -> None:
