@@ -17,9 +17,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from core.jit import kernel
+from core.periodic import nearest
 
 COINCIDENT = (
     1e-290  # [R²] keeps 1/r finite for coincident centres; far below rounding for all others
@@ -53,13 +52,7 @@ def slot_forces(neighbor, stiffness, xs, ys, ss, us, vs, x, y, s, u, v, fx, fy, 
     energy = 0.0
     for i in range(neighbor.shape[0]):
         j = neighbor[i]
-        dx = x[j] - xs[i]
-        dy = y[j] - ys[i]
-        if box is not None:
-            rows = np.rint(dy * box[3])
-            dx -= rows * box[4]
-            dy -= rows * box[2]
-            dx -= box[0] * np.rint(dx * box[1])
+        dx, dy = nearest(x[j] - xs[i], y[j] - ys[i], box)
         ui = us[i]
         vi = vs[i]
         uj = u[j]
@@ -100,13 +93,7 @@ def slot_force_sum(neighbor, stiffness, x, y, s, u, v, box):
     contacts = 0.0
     for i in range(neighbor.shape[0]):
         j = neighbor[i]
-        dx = x[j] - x[i]
-        dy = y[j] - y[i]
-        if box is not None:
-            rows = np.rint(dy * box[3])
-            dx -= rows * box[4]
-            dy -= rows * box[2]
-            dx -= box[0] * np.rint(dx * box[1])
+        dx, dy = nearest(x[j] - x[i], y[j] - y[i], box)
         r2 = dx * dx + dy * dy + COINCIDENT
         c2 = (dx * dx - dy * dy) / r2
         s2 = 2.0 * dx * dy / r2
@@ -152,13 +139,7 @@ def add_contact_forces(begin, end, state, support, force, width, offset, neighbo
 @kernel
 def grain_overlap(state, support, i, j, box):
     """One pair by itself: (overlap, dx, dy, c2, s2, h_i, h_j), d from i to j. Not for the inner loop."""
-    dx = state[0, j] - state[0, i]
-    dy = state[1, j] - state[1, i]
-    if box is not None:
-        rows = np.rint(dy * box[3])
-        dx -= rows * box[4]
-        dy -= rows * box[2]
-        dx -= box[0] * np.rint(dx * box[1])
+    dx, dy = nearest(state[0, j] - state[0, i], state[1, j] - state[1, i], box)
     r2 = dx * dx + dy * dy + COINCIDENT
     c2 = (dx * dx - dy * dy) / r2
     s2 = 2.0 * dx * dy / r2

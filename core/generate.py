@@ -18,6 +18,7 @@ from core.errors import InputError
 from core.jit import kernel
 from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
 from core.packing import Packing, PeriodicBox
+from core.periodic import nearest
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point, RigidWorld, polygon_area
 from core.rigid_contacts import EDGE, image
@@ -281,13 +282,7 @@ def _add(
                 cell = near_row * columns + near_column
                 for k in range(filled[cell]):
                     j = cells[cell, k]
-                    dx = px - x[j]
-                    dy = py - y[j]
-                    if box is not None:
-                        turns = np.rint(dy * box[3])
-                        dx -= turns * box[4]
-                        dy -= turns * box[2]
-                        dx -= box[0] * np.rint(dx * box[1])
+                    dx, dy = nearest(px - x[j], py - y[j], box)
                     apart = radius[i] + radius[j]
                     if dx * dx + dy * dy < apart * apart:
                         free = False

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.jit import kernel
+from core.periodic import nearest
 
 SLOT_PADDING = 8
 FIT, PAIRS_FULL, SLOTS_FULL, RIGID_FULL = 0, 1, 2, 3  # what a rebuild answers
@@ -164,13 +165,7 @@ def append_near(a, begin, end, pairs, lists, box):
     if pairs < 0 or pairs + end - begin > first.shape[0]:
         return -1
     for b in range(begin, end):
-        dx = x[b] - x[a]
-        dy = y[b] - y[a]
-        if box is not None:
-            turns = np.rint(dy * box[3])
-            dx -= turns * box[4]
-            dy -= turns * box[2]
-            dx -= box[0] * np.rint(dx * box[1])
+        dx, dy = nearest(x[b] - x[a], y[b] - y[a], box)
         reach = extent[a] + extent[b]
         first[pairs] = cell_order[a]
         second[pairs] = cell_order[b]
