@@ -171,11 +171,12 @@ def _is_curve(stroke: Floats) -> bool:
 
 
 def _same_run(kept: Kept, frame: Frame) -> bool:
-    return (kept.scene, kept.packing, kept.seed, dict(kept.settings)) == (
+    return (kept.scene, kept.packing, kept.seed, dict(kept.settings), kept.labels) == (
         frame.scene,
         frame.packing,
         frame.seed,
         dict(frame.settings),
+        (frame.stroke_label, frame.curve_label),
     )
 
 

@@ -13,7 +13,7 @@ from sandbox.draw.camera import Camera
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
-from sandbox.draw.text import HEADING
+from sandbox.draw.text import BODY, HEADING, SMALL
 from sandbox.draw.theme import HAND, magnitude_colours, mix
 from sandbox.draw.words import FORCE_UNIT
 from sandbox.frame import Frame, HandleState
@@ -208,8 +208,12 @@ def _draw_force(
     painter.hull(corners, 0.0, HAND, clip=rect)
 
     label = f"{number(size, decimals_for(top) + 2)} {FORCE_UNIT}"
-    width = painter.type.width(label, HEADING, bold=True) + round(14 * scale)
-    height = painter.type.height(HEADING, bold=True) + round(4 * scale)
+    type_, pad = painter.type, round(14 * scale)
+    widths = {each: type_.width(label, each, bold=True) + pad for each in (HEADING, BODY, SMALL)}
+    letters = next((each for each, width in widths.items() if width <= free.width), 0)
+    if not letters:
+        return
+    width, height = widths[letters], type_.height(letters, bold=True) + round(4 * scale)
     plate = pygame.Rect(0, 0, width, height)
     away = 0.5 * (width * abs(way[0]) + height * abs(way[1])) + 5.0 * scale
     plate.center = (round(tip[0] + away * way[0]), round(tip[1] + away * way[1]))
@@ -228,4 +232,4 @@ def _draw_force(
         edge_width=1.5 * scale,
         alpha=0.94,
     )
-    painter.text(label, *plate.center, size=HEADING, bold=True, anchor="centre", clip=rect)
+    painter.text(label, *plate.center, size=letters, bold=True, anchor="centre", clip=rect)
