@@ -132,7 +132,7 @@ def relax(discs: SoftDiscs) -> Relaxed:
     while largest > TOLERANCE and iterations < MOST_ITERATIONS:
         due += SLICE
         while iterations < due:
-            code, used = fire.run(m, box, None, None, None, limits, due - iterations)
+            code, used = fire.run(m, box, None, None, None, limits, due - iterations, None)
             iterations += used
             if code == fire.LISTS_STALE:
                 if fire.relist(m, box, None, None, SKIN) != neighbors.FIT:
