@@ -138,7 +138,13 @@ class App:
         self.arrows = Arrows(self)
         own = [ParameterSection(name, self.settings) for name in ("grains", "geometry", "solver")]
         self.panel = Panel(self, folded={"solver", "files", "looks"})
-        self.panel.sections += [GeneralSection(self), self.inspector, self.brush, *own]
+        self.panel.sections += [
+            GeneralSection(self),
+            self.timeline,
+            self.inspector,
+            self.brush,
+            *own,
+        ]
         self.panel.sections += [CurvesSection(self), FilesSection(self), LooksSection(self)]
         self.focus.groups = [
             self.arrows.stops,

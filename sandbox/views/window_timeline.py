@@ -12,13 +12,24 @@ from sandbox.commands import Recall, Redo, Undo
 from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.timeline import Bar, draw_bar, draw_plate
-from sandbox.draw.widgets import Button, Choice, Option, Place, Places, parts_of
+from sandbox.draw.widgets import (
+    Button,
+    Choice,
+    Control,
+    Option,
+    Place,
+    Places,
+    Row,
+    Simple,
+    parts_of,
+)
 from sandbox.draw.widgets_look import Attention, draw_control, draw_ring
 from sandbox.frame import Frame
 from sandbox.views.window_display import FRAMES
 from sandbox.views.window_keys import Action
 from sandbox.views.window_parts import Silent
 from sandbox.views.window_press import keyed, pressed
+from sandbox.views.window_sections import Value
 
 if TYPE_CHECKING:
     from sandbox.views.window import App
@@ -33,7 +44,10 @@ GAP, SPEED_WIDTH, SPEED_SHARE = 8.0, 150.0, 0.3  # at scale 1 [px]; and of the l
 
 
 class Timeline(Silent):
-    """The bar under the canvas, and the keys that go through time."""
+    """The bar under the canvas, and the keys that go through time. Where there is no room for it, a row in the panel."""
+
+    name = "time"
+    title = ""
 
     def __init__(self, app: App) -> None:
         self.app = app
@@ -64,25 +78,25 @@ class Timeline(Silent):
             return Places((), 0)
         scale = self.app.renderer.scale
         gap = round(GAP * scale)
-        paused = self.app.run.paused
         play = pygame.Rect(line.left + gap, line.top, line.height, line.height)
         step = play.move(line.height + gap // 2, 0)
         wide = round(min(SPEED_WIDTH * scale, SPEED_SHARE * line.width))
         speed = pygame.Rect(line.right - gap - wide, line.top, wide, line.height)
+        rects = (play, step, speed)
+        each = zip(self._buttons(), rects, strict=True)
+        return Places(tuple(Place(control, rect) for control, rect in each), line.height)
+
+    def _buttons(self) -> tuple[Simple, ...]:
+        """Play, step, speed."""
         options = tuple(
             Option(name, words.SPEED.format(speed=name) if name != "max" else words.SPEED_MOST)
             for name in SPEED_NAMES
         )
-        return Places(
-            (
-                Place(Button("time/play", "▶" if paused else "⏸", help=words.PLAY_HELP), play),
-                Place(Button("time/step", "⏭", help=words.STEP_HELP), step),
-                Place(
-                    Choice("time/speed", "", options, SPEED_NAMES[self.speed], words.SPEED_HELP),
-                    speed,
-                ),
-            ),
-            line.height,
+        paused = self.app.run.paused
+        return (
+            Button("time/play", "▶" if paused else "⏸", help=words.PLAY_HELP),
+            Button("time/step", "⏭", help=words.STEP_HELP),
+            Choice("time/speed", "", options, SPEED_NAMES[self.speed], words.SPEED_HELP),
         )
 
     def bar(self) -> Bar | None:
@@ -221,7 +235,7 @@ class Timeline(Silent):
                 place.control, parts_of(place.control, place.rect, self.app.renderer.type), pos
             )
             if value is not None:
-                self._use(place.control.name, str(value))
+                self.use(place.control.name, str(value), True)
         elif bar is not None and bar.rect.inflate(round(4 * GAP), 0).collidepoint(pos):
             self.app.focus.go(BAR, False)
             self._dragging = True
@@ -243,16 +257,29 @@ class Timeline(Silent):
         asked = None if place is None else keyed(place.control, event)
         if place is None or asked is None:
             return False
-        self._use(name, str(asked.value))
+        self.use(name, str(asked.value), True)
         return True
 
-    def _use(self, name: str, value: str) -> None:
+    # -- as a section of the panel --
+
+    @property
+    def there(self) -> bool:
+        """Where the window has no room for the line."""
+        return self.bar() is None
+
+    def controls(self) -> Sequence[Control]:
+        """The same buttons."""
+        return (Row(self._buttons(), (1.0, 1.0, 3.0)),)
+
+    def use(self, name: str, value: Value, done: bool) -> None:
+        """Play, step, or another speed."""
+        del done
         if name == "time/play":
             self.app.act(Action.PAUSE)
         elif name == "time/step":
             self.app.act(Action.STEP)
         else:
-            self.set_speed(SPEED_NAMES.index(value))
+            self.set_speed(SPEED_NAMES.index(str(value)))
 
     # -- drawing --
 

@@ -363,6 +363,10 @@ def test_where_there_is_no_room_the_panel_opens_over_the_canvas() -> None:
     assert 600 <= panel.rect.width <= 800
     assert panel.rect.right == desk.app.renderer.size[0]
     assert "general/reset" in panel.stops()
+    assert desk.app.timeline.rect.height == 0
+    rect = box(desk, "time/play")  # there is no room for the time line: its buttons are here
+    desk.click(rect.center)
+    assert desk.paused()
     desk.click((panel.rect.left - 20, 300))
     assert panel.rect.width == 0
     desk.app.close()
