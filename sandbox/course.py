@@ -23,7 +23,9 @@ class Course:
     last_exit: tuple[float, float] = (0.0, 0.0)  # stroke and force when a grain last left
     waited: float = 0.0  # stroke between that and the exit before
     moving: bool = False  # the grains go on by themselves
-    touched: bool = False  # something was changed: relax once where things stand
+    touched: int = (
+        0  # something was changed: relax where things stand, in so many increments at most
+    )
     edited: bool = False  # grains or walls are no longer those that the scene came with
     next_label: int = 0  # of a grain that is placed: larger than any that there was
     notices: list[str] = field(default_factory=list)

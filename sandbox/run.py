@@ -12,7 +12,7 @@ from core.errors import InputError
 from core.friction import Friction
 from core.packing import PeriodicBox
 from core.quasistatic import Increment, Quasistatic
-from core.relaxation import StopReason
+from core.relaxation import FAILED, StopReason
 from core.rigid import Point
 from sandbox.checkpoints import Checkpoint, Checkpoints, bare
 from sandbox.commands import Edit
@@ -26,6 +26,7 @@ from scenes.scene import Check, Earlier, Handle, Latest, Remarks, Scene, Setup, 
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
 ARRIVED = 1e-6  # [R] a body this near its target is there
+MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
@@ -146,8 +147,8 @@ class Run:
         self._before_edit = before
 
     def touched(self) -> None:
-        """Something was changed between two increments: one increment relaxes where things stand."""
-        self._course.touched = True
+        """Something was changed between two increments: one relaxes where things stand, or a few until it is relaxed."""
+        self._course.touched = MOST_RELAXATIONS
         self._kept = None
 
     def say(self, notice: str) -> None:
@@ -183,7 +184,9 @@ class Run:
             return True
         # What a change has done is nothing that the grains did.
         before = None if self._course.touched else self._last
-        self._last, self._course.touched = increment, False
+        unfinished = increment.report.reason is StopReason.ITERATION_LIMIT
+        self._course.touched = max(self._course.touched - 1, 0) if unfinished else 0
+        self._last = increment
         earlier = None if before is None else Earlier(before, self.setup.packing.label)
         tell_what_stopped(self._course, self.setup, increment)
         left = self._remove_those_gone()
@@ -201,7 +204,7 @@ class Run:
     def _too_tight(self, increment: Increment) -> bool:
         """After an edit: if the grains cannot be relaxed, back to before it. True then."""
         before, self._before_edit = self._before_edit, None
-        if increment.report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
+        if increment.report.reason not in FAILED:
             return False
         assert before is not None
         self.restore(before[0])
@@ -210,7 +213,8 @@ class Run:
         return True
 
     def _record(self, increment: Increment) -> None:
-        row = read_off(self._course, self.setup, increment, len(self.history))
+        factor = self.scene.accuracy.error_factor
+        row = read_off(self._course, self.setup, increment, len(self.history), factor)
         self.history.append(row)
 
     @property
@@ -399,7 +403,7 @@ class Run:
     @property
     def failed(self) -> bool:
         """True if the newest increment led to nothing that can be shown."""
-        return self._last.report.reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
+        return self._last.report.reason in FAILED
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run; about what a person has made, only those that hold for any scene."""

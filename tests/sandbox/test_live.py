@@ -193,3 +193,14 @@ def test_every_scene_has_live_parameters_and_applies_them() -> None:
         go(session, 2)
         reason = session.history[-1].stop_reason
         assert reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED), name
+
+
+def test_what_a_change_leaves_unrelaxed_is_relaxed_in_further_increments() -> None:
+    session = pressed("intruder", "mixed", 30, grains=100, intruder_radius=3.0)
+    rows = len(session.history)
+    do(session, Change("max_iterations", 900), Change("regular_poisson_ratio", 0.0))
+    rest(session)
+    reasons = session.history.column("stop_reason")[rows:]
+    assert 1 < len(reasons) <= 5
+    assert set(reasons[:-1]) == {"iteration limit"}
+    assert reasons[-1] == "converged"
