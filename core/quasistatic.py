@@ -8,6 +8,7 @@ an increment may be cut into any number of calls and takes the same course to th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -20,9 +21,11 @@ from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodi
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
 from core.packing import Packing, PeriodicBox
+from core.passage import deep_grains, passed_faces
 from core.relaxation import (
     DEFAULT_SKIN,
     DEFAULT_TOLERANCE,
+    FAILED,
     Relaxation,
     Report,
     StopReason,
@@ -40,7 +43,10 @@ LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a bod
 
 @dataclass(frozen=True)
 class Settings:
-    """How carefully to relax. ``step`` is the longest move of a body in one increment [R]."""
+    """How carefully to relax. ``step`` is the longest move of a body in one increment [R].
+
+    ``force_floor`` [k] and ``skin`` are multiplied by the largest rest radius: what is done is the same in all units of length.
+    """
 
     step: float = DEFAULT_STEP
     tolerance: float = DEFAULT_TOLERANCE
@@ -54,6 +60,8 @@ class Settings:
             raise InputError(f"the increment must be greater than 0 and at most {LONGEST_STEP} R")
         if self.max_iterations < 1:
             raise InputError("an increment needs at least one iteration")
+        if not (self.tolerance > 0.0 and self.force_floor > 0.0 and 0.0 < self.skin < math.inf):
+            raise InputError("the tolerance, the force floor and the skin must be greater than 0")
 
 
 @dataclass(frozen=True)
@@ -95,6 +103,7 @@ class Quasistatic:
         self.world = world
         self.settings = settings or Settings()
         _check_step(self.settings.step, packing)
+        _check_gravity(gravity, packing)
         self.reactions = np.zeros((len(world.bodies), 3))
         self.friction = friction
         self.gravity = gravity
@@ -108,6 +117,7 @@ class Quasistatic:
         self._start: Floats = packing.state.copy()
         self._start_box = packing.box
         self._placement: Floats = world.placement()
+        self._primitives: Floats = world.primitives()[0]
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
         self._own_motion: Floats = np.zeros_like(self._carried)
@@ -156,6 +166,7 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("nothing can be changed in the middle of an increment")
         _check_step(settings.step, self.packing)
+        _check_gravity(gravity, self.packing)
         self.settings, self.gravity, self.drag = settings, gravity, drag
         if friction == 0.0:
             self.friction = self._frozen = None
@@ -176,6 +187,7 @@ class Quasistatic:
         if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
             self._contacts = None
         self._placement = self.world.placement()
+        self._primitives = self.world.primitives()[0]
         for name, target in targets.items():
             push = self.reactions[self.world.index(name)]
             moved, stopped = self.world.advance(
@@ -195,6 +207,7 @@ class Quasistatic:
             self._predict()
         primitives, _ = self.world.primitives()
         settings = self.settings
+        largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
             self.packing,
             primitives,
@@ -202,7 +215,7 @@ class Quasistatic:
             self.gravity,
             self.drag,
             tolerance=settings.tolerance,
-            force_floor=settings.force_floor,
+            force_floor=settings.force_floor * largest,
             skin=settings.skin,
             max_iterations=settings.max_iterations,
             threads=settings.threads,
@@ -217,14 +230,21 @@ class Quasistatic:
             report = replace(report, reason=StopReason.CONVERGED, residual=0.0)
         if report.reason is StopReason.BUDGET:
             return None
-        good = report.reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED)
+        contacts = None
+        if self._relaxes and report.reason not in FAILED:
+            before = (self._contacts or self.contacts())[1]
+            deep_before = deep_grains(self.packing, before, self.settings.step)
+            self._relaxation.write_back()
+            contacts = self.contacts()
+            if self._went_into_bodies(before, contacts[1], deep_before):
+                report = replace(report, reason=StopReason.SUNK)
+        good = report.reason not in FAILED
         if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self.packing.state[:] = self._start
             self.packing.box = self._start_box
             self.world.place(self._placement)
-        elif self._relaxes:
-            self._relaxation.write_back()
+            contacts = None
         unbalanced = np.zeros(len(self.packing))
         if good and self._relaxes:
             unbalanced = np.hypot(*self._relaxation.forces()[:2])
@@ -235,7 +255,8 @@ class Quasistatic:
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._moved
-        return self._observe(report, unbalanced, forces)
+        self._contacts = contacts or self.contacts()
+        return self._observe(report, self._contacts, unbalanced, forces)
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
         """All contacts as things stand now."""
@@ -352,12 +373,28 @@ class Quasistatic:
             self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
         )
 
+    def _went_into_bodies(
+        self,
+        before: observables.RigidContacts,
+        now: observables.RigidContacts,
+        deep_before: set[int],
+    ) -> bool:
+        """True if a grain has sunk into a body, or gone through a face of it, in this increment."""
+        if deep_grains(self.packing, now, self.settings.step) - deep_before:
+            return True
+        ways = self._start, self.packing.state, self._primitives, self.world.primitives()[0]
+        return passed_faces(now, *ways) or passed_faces(before, *ways)
+
     def _observe(
-        self, report: Report, unbalanced: Floats, friction: FrictionForces | None
+        self,
+        report: Report,
+        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
+        unbalanced: Floats,
+        friction: FrictionForces | None,
     ) -> Increment:
         _, owner = self.world.primitives()
         placement = self.world.placement()
-        pairs, bodies = self._contacts = self.contacts()
+        pairs, bodies = contacts
         self.reactions = observables.reactions(bodies, owner, placement)
         if friction is not None:
             self.reactions += friction.reactions(owner, placement)
@@ -372,6 +409,15 @@ class Quasistatic:
             friction=friction,
         )
         return self.latest
+
+
+def _check_gravity(gravity: Point | None, packing: Packing) -> None:
+    """Raises InputError if a grain's weight alone presses it into the floor by its radius; ``gravity`` in k/R."""
+    if gravity is None or not len(packing):
+        return
+    most = float(np.min(packing.contact_stiffness / packing.rest_radius))
+    if not math.hypot(*gravity) < most:
+        raise InputError(f"gravity must be less than {most:.3g} k/R for these grains")
 
 
 def _check_step(step: float, packing: Packing) -> None:

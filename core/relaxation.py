@@ -29,7 +29,11 @@ class StopReason(StrEnum):
     ITERATION_LIMIT = "iteration limit"
     NOT_FINITE = "not finite"
     COLLAPSED = "collapsed"
+    SUNK = "sunk"  # the bodies have pressed a grain into one of them, up to its centre
 
+
+# An increment that ended so is taken back.
+FAILED = frozenset({StopReason.NOT_FINITE, StopReason.COLLAPSED, StopReason.SUNK})
 
 _REASONS = {
     fire.CONVERGED: StopReason.CONVERGED,
@@ -86,7 +90,8 @@ class Relaxation:
         count = len(packing)
         self._box = None if packing.box is None else packing.box.kernel_form()
         if packing.box is not None and count:
-            reach = 2.0 * float(packing.semi_axes[0].max()) + skin
+            largest = float(packing.rest_radius.max())
+            reach = 2.0 * float(packing.semi_axes[0].max()) + skin * largest
             if min(packing.box.width, packing.box.height) < 2.0 * reach:
                 raise InputError(
                     f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"

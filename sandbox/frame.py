@@ -135,7 +135,7 @@ class Frame:
     residual: float  # largest generalised force relative to the mean contact force
     tolerance: float  # the residual that counts as converged
     iterations: int  # of the minimiser, in this increment
-    stop_reason: str  # "converged", "budget", "iteration limit", "not finite" or "collapsed"
+    stop_reason: str  # "converged", "budget", "iteration limit", "not finite", "collapsed" or "sunk"
     busy: bool  # an increment is being relaxed: the hand waits
     protocol: bool  # the scripted drive is on
     notices: tuple[str, ...]  # plain words for the person at the window

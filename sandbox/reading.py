@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from core.quasistatic import Increment
-from core.relaxation import StopReason
+from core.relaxation import FAILED, StopReason
 from sandbox.course import Course
 from sandbox.history import Row
 from scenes.scene import Setup
@@ -15,8 +15,14 @@ from scenes.text import Text
 
 BOX = "box"  # the handle that is no body: the periodic cell
 STUCK = 1e-3  # of a step: a body that moves less than that is stopped
+PRESSED_IN = "a grain was pressed into a wall: back to the state before this step. Draw back, or reset"
 SQUEEZED_FLAT = "a grain was squeezed flat: back to the state before this step. Draw back, or reset"
 BLEW_UP = "the numbers blew up: back to the state before this step. Draw back, or reset"
+_WHAT_FAILED = {
+    StopReason.COLLAPSED: SQUEEZED_FLAT,
+    StopReason.NOT_FINITE: BLEW_UP,
+    StopReason.SUNK: PRESSED_IN,
+}
 
 
 def follow_drive(course: Course, setup: Setup, increment: Increment) -> None:
@@ -79,7 +85,7 @@ def tell_what_stopped(course: Course, setup: Setup, increment: Increment) -> Non
         elif stuck:
             course.notices.append(Text("{label}: stopped by the wall", label=label))
     reason = increment.report.reason
-    if reason in (StopReason.NOT_FINITE, StopReason.COLLAPSED):
+    if reason in FAILED:
         course.blocked.update(increment.moved, {BOX})
         course.script = None
-        course.notices.append(SQUEEZED_FLAT if reason is StopReason.COLLAPSED else BLEW_UP)
+        course.notices.append(_WHAT_FAILED[reason])

@@ -281,7 +281,8 @@ def _stiffness(setup: Setup, track: Track) -> Check:
     measured = track.force[first] / track.stroke[first]
     # The residual is bounded by a share of the contact force, or of the floor where the force is less.
     solver = setup.solver
-    residual = solver.tolerance * (1.0 + solver.force_floor / (expected * track.stroke[first]))
+    floor = solver.force_floor * float(packing.rest_radius[0])
+    residual = solver.tolerance * (1.0 + floor / (expected * track.stroke[first]))
     return Check(
         name,
         bool(abs(measured / expected - 1.0) < 2.0 * strain + NOISE + residual),
@@ -303,7 +304,8 @@ def _overlap_share(setup: Setup) -> Check:
     share = float(contacts.overlap[upright].sum()) / (approach * len(packing))
     expected = float(np.mean(2.0 / packing.contact_stiffness))
     solver = setup.solver
-    residual = solver.tolerance * (1.0 + solver.force_floor / approach)
+    floor = solver.force_floor * float(packing.rest_radius[0])
+    residual = solver.tolerance * (1.0 + floor / approach)
     return Check(
         name,
         bool(abs(share / expected - 1.0) < 2.0 * strain + NOISE + residual),

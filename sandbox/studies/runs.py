@@ -28,7 +28,11 @@ from scenes.scene import Ingredients
 DATA_VERSION = 1  # of what a run writes down; raise it when probes change
 SLICE = 400  # force evaluations between two looks at whether to stop: a fraction of a second
 # Reasons to stop a relaxation after which the scripted drive does not go on.
-BROKEN = {"collapsed": "a grain was squeezed flat", "not finite": "the numbers blew up"}
+BROKEN = {
+    "collapsed": "a grain was squeezed flat",
+    "not finite": "the numbers blew up",
+    "sunk": "a grain was pressed into a wall",
+}
 LOST = "the process that ran it ended without a word"
 
 

@@ -1,0 +1,44 @@
+"""Whether an increment has taken a grain into a body or through one of its faces: what such an increment leads to is no answer.
+
+A contact is a spring, and springs can be overpowered: by a hand stronger than they are, by friction coefficients of 10. A grain
+whose centre has come past a face is pushed on to the other side.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.observables import RigidContacts
+from core.packing import Packing
+from core.rigid_contacts import EDGE
+
+Floats = NDArray[np.float64]
+
+
+def deep_grains(packing: Packing, contacts: RigidContacts, step: float) -> set[int]:
+    """The grains so deep in a body that one more step [R] could take its face past their centre."""
+    deep = contacts.overlap + step >= packing.semi_axes[1][contacts.grain]
+    return set(contacts.grain[deep].tolist())
+
+
+def passed_faces(
+    contacts: RigidContacts, start: Floats, state: Floats, rows_then: Floats, rows_now: Floats
+) -> bool:
+    """True if a grain of ``contacts`` has gone through the face that it touches or touched, from one side to the other.
+
+    ``start`` and ``state`` (5, N) are the grains before and after, ``rows_then`` and ``rows_now`` (M, 8) the primitives.
+    """
+    face = rows_now[contacts.primitive, 0] == EDGE
+    grain, primitive = contacts.grain[face], contacts.primitive[face]
+    image = np.array([contacts.image_x[face], contacts.image_y[face]])
+    sides = []
+    over = np.ones(len(grain), dtype=bool)
+    for places, rows in ((start, rows_then[primitive]), (state, rows_now[primitive])):
+        dx, dy = places[:2, grain] + image - rows[:, 1:3].T
+        ux, uy = rows[:, 3], rows[:, 4]
+        along = dx * ux + dy * uy
+        length = (rows[:, 5] - rows[:, 1]) * ux + (rows[:, 6] - rows[:, 2]) * uy
+        over &= (along >= 0.0) & (along <= length)
+        sides.append(ux * dy - uy * dx >= 0.0)
+    return bool(np.any(over & (sides[0] != sides[1])))
