@@ -10,34 +10,33 @@ import numpy as np
 
 from core.errors import InputError
 from core.friction import Friction
-from core.packing import PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
-from core.rigid import Point
 from sandbox.checkpoints import Checkpoint, Checkpoints, bare
 from sandbox.commands import Edit
 from sandbox.course import Course
+from sandbox.driven import Driven
 from sandbox.editing import edited
 from sandbox.frame import Frame
 from sandbox.history import Event, History
 from sandbox.reading import BOX, follow_drive, read_off, tell_what_stopped
 from sandbox.snapshot import View, take
-from scenes.scene import Check, Earlier, Handle, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
-ARRIVED = 1e-6  # [R] a body this near its target is there
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
-class Run:
+class Run(Driven):
     """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
 
     def __init__(
         self, scene: Scene, values: Values, packing_kind: str, seed: int, setup: Setup
     ) -> None:
-        self.scene, self.values, self.packing_kind, self.seed = scene, values, packing_kind, seed
-        self.setup = setup
+        drive = setup.handles[0]
+        super().__init__(scene, values, setup, Course(drive.direction, len(setup.packing)))
+        self.packing_kind, self.seed = packing_kind, seed
         friction = None
         if setup.friction > 0.0:
             kept = setup.friction_state
@@ -55,8 +54,6 @@ class Run:
         )
         self.history = History()
         self.checkpoints = Checkpoints()
-        self._drive = setup.handles[0]
-        self._course = Course(self._drive.direction, len(setup.packing))
         self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
         self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
@@ -70,36 +67,7 @@ class Run:
         self._remark(None, None, 0)
         self._keep()
 
-    # What a hand does.
-
-    def grab(self, handle: str) -> None:
-        """Take hold of a handle; the scripted drive ends. Raises InputError for an unknown one."""
-        self._handle(handle)
-        self._course.held.add(handle)
-        self._course.script = None
-        self._course.targets.clear()
-
-    def move(self, handle: str, target: Point) -> None:
-        """Where a held handle is to go [R]."""
-        self._handle(handle)
-        if handle in self._course.held:
-            reach = self.setup.reach
-            there = target if reach is None else reach(self.setup.packing, handle, target)
-            self._course.targets[handle] = there
-            self._course.blocked.discard(handle)
-            self._course.notices.clear()
-
-    def release(self, handle: str) -> None:
-        """Let go; the body stays where it is."""
-        self._handle(handle)
-        self._course.held.discard(handle)
-        self._course.targets.pop(handle, None)
-
-    def follow_script(self, on: bool) -> None:
-        """Switch the scripted drive on, from its beginning, or off."""
-        self._course.script = 0 if on else None
-        self._course.targets.clear()
-        self._course.blocked.clear()
+    # Changes.
 
     def adjust(self, values: Values, changed: frozenset[str]) -> None:
         """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
@@ -150,17 +118,6 @@ class Run:
         """Something was changed between two increments: one relaxes where things stand, or a few until it is relaxed."""
         self._course.touched = MOST_RELAXATIONS
         self._kept = None
-
-    def say(self, notice: str) -> None:
-        """Plain words for the person at the window, until something else is to be said."""
-        self._course.notices = [notice]
-
-    def _handle(self, name: str) -> Handle:
-        for handle in self.setup.handles:
-            if handle.body == name:
-                return handle
-        known = ", ".join(handle.body for handle in self.setup.handles)
-        raise InputError(f"nothing here is called {name!r}; there are: {known}")
 
     # Increments.
 
@@ -256,41 +213,6 @@ class Run:
                 course.announced[kind] = course.out
                 self.history.announce(Event(kind, row.increment, row.stroke, row.resisting, text))
 
-    def _next_targets(self) -> dict[str, Point]:
-        course = self._course
-        if course.script is not None:
-            targets = self.scene.drive(self.setup, self.values, course.script)
-            if targets is not None:
-                course.script += 1
-                course.targets = dict(targets)
-                return dict(targets)
-            course.script = None
-            course.targets.clear()
-        return self._wanted()
-
-    def _wanted(self) -> dict[str, Point]:
-        """What is not yet where the hand wants it, unless something stops it."""
-        return {
-            name: target
-            for name, target in self._course.targets.items()
-            if name not in self._course.blocked and self._distance(name, target) > ARRIVED
-        }
-
-    def _cell(self, target: Point) -> PeriodicBox | None:
-        """The periodic cell that a hand at ``target`` asks for."""
-        to_box = self.setup.box_target
-        return to_box(target) if to_box is not None else None
-
-    def _distance(self, name: str, target: Point) -> float:
-        """How far a handle is from its target [R]."""
-        if name == BOX:
-            cells = self.setup.packing.box, self._cell(target)
-            now, then = ((c.width, c.height, c.shift) if c else (0.0,) * 3 for c in cells)
-            return float(np.max(np.abs(np.nan_to_num(then) - np.nan_to_num(now))))
-        body = self.setup.world[name]
-        way = np.array(target) - body.position
-        return abs(float(np.dot(way, body.axis))) if body.axis is not None else math.hypot(*way)
-
     def _remove_those_gone(self) -> int:
         """How many grains have left by the outlet in this increment."""
         if self.setup.outlet is None:
@@ -364,10 +286,6 @@ class Run:
         """Go to the state after that increment, or the nearest kept before it."""
         self.restore(self.checkpoints.at(increment))
 
-    def still(self) -> None:
-        """Nothing is held, nothing is wanted, and the script is off."""
-        self._course.still()
-
     # What can be seen.
 
     def frame(self, can_undo: bool = False, can_redo: bool = False) -> Frame:
@@ -382,7 +300,7 @@ class Run:
                 engine=self.engine,
                 last=self._last,
                 history=self.history,
-                drive=self._drive,
+                drive=self.setup.handles[0],
                 course=self._course,
                 kept=(self.checkpoints.first, self.checkpoints.last),
                 can_undo=can_undo,
