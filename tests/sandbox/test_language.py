@@ -19,7 +19,9 @@ from scenes import registry
 from scenes.text import Text, message
 
 REPOSITORY = Path(__file__).parents[2]
-SOURCES = [path for part in ("core", "scenes", "sandbox") for path in (REPOSITORY / part).rglob("*.py")]
+SOURCES = [
+    path for part in ("core", "scenes", "sandbox") for path in (REPOSITORY / part).rglob("*.py")
+]
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 OTHERS = [code for code in language.available() if code != language.SOURCE]
 
@@ -63,7 +65,8 @@ def test_nothing_was_forgotten(code: str) -> None:
     """A text that is the same in both languages is a name, a sign, or a word that both have."""
     source, other = (dict(leaves(language.table(c))) for c in (language.SOURCE, code))
     alike = {re.sub(r"\{.*?\}", "", text) for key, text in source.items() if other[key] == text}
-    assert not {text for text in alike if re.search("[A-Za-z]{4}", text)}
+    same_in_german = {"Tour"}
+    assert not {text for text in alike if re.search("[A-Za-z]{4}", text)} - same_in_german
 
 
 def test_every_word_that_is_asked_for_is_there_and_none_is_left_over() -> None:
@@ -117,9 +120,9 @@ def test_no_word_is_taken_at_import() -> None:
                     for part in ast.walk(default) if default is not None else ():
                         taken = isinstance(part, ast.Attribute) and part.attr.isupper()
                         base = getattr(part, "value", None)
-                        assert not (
-                            taken and isinstance(base, ast.Name) and base.id == "words"
-                        ), f"{path}: default of {node.name}"
+                        assert not (taken and isinstance(base, ast.Name) and base.id == "words"), (
+                            f"{path}: default of {node.name}"
+                        )
 
 
 @pytest.mark.parametrize("name", registry.names())

@@ -137,7 +137,7 @@ def asked(until: Condition, session: Session) -> list[Command]:
     """Commands that do what is asked for, apart from pulling."""
     _, ymin, xmax, ymax = session.frame().bounds
     if until.setting:
-        return [Change(until.setting, 0.2)]
+        return [Change(until.setting, 0.25)]
     if until.grains:
         return [
             Place(xmax - 4.0, ymin + share * (ymax - ymin), "auxetic")
@@ -149,7 +149,10 @@ def asked(until: Condition, session: Session) -> list[Command]:
 
 
 def pull(session: Session, name: str) -> None:
-    """One increment, the hand a little ahead of the handle."""
+    """One increment, the hand a little ahead of the handle; nobody pulls where grains go on by themselves."""
+    if not name and session.run.setup.drag > 0.0:
+        session.advance(2000)
+        return
     handles = {handle.body: handle for handle in session.run.setup.handles}
     handle = handles[name or next(iter(handles))]
     frame = session.frame()

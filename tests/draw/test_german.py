@@ -1,0 +1,127 @@
+"""German words are longer: they fit all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pygame
+import pytest
+
+from sandbox import language, tours
+from sandbox.draw import words
+from sandbox.draw.help_page import draw_help
+from sandbox.draw.painter import Painter
+from sandbox.draw.render import Renderer
+from sandbox.draw.text import Type
+from sandbox.draw.tour_card import TourPage, card_layout, draw_tour_card
+from sandbox.draw.views import VIEWS
+from sandbox.views.window_menu import Menu
+from tests.draw.frames import hopper_frame, intruder_frame
+
+SIZES = [(1280, 720), (1920, 1080)]
+CARD = 296  # width of a tour's card above the panel at scale 1 [px]
+
+
+@pytest.fixture(autouse=True)
+def german() -> Iterator[None]:
+    language.use("de")
+    yield
+    language.use(language.SOURCE)
+
+
+@pytest.fixture
+def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
+    """Every text that is drawn, and its place."""
+    written: list[tuple[str, pygame.Rect]] = []
+    original = Painter.text
+
+    def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
+        place = original(self, content, x, y, **more)
+        if content:
+            written.append((content, place))
+        return place
+
+    monkeypatch.setattr(Painter, "text", text)
+    return written
+
+
+def nothing_cut(texts: list[tuple[str, pygame.Rect]], window: tuple[int, int]) -> None:
+    assert texts
+    assert [content for content, _ in texts if "…" in content] == []
+    for content, place in texts:
+        assert pygame.Rect((0, 0), window).contains(place), content
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("view", VIEWS)
+def test_the_picture_of_a_run(
+    texts: list[tuple[str, pygame.Rect]], view: str, size: tuple[int, int]
+) -> None:
+    for frame in (hopper_frame(title="Hopper"), intruder_frame(8, title="Intruder")):
+        Renderer(size, view=view).draw(frame, rate="60 Bilder/s · 12 ms", paused=True)
+    nothing_cut(texts, size)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("scale", [1.0, 1.5])
+def test_the_menu(
+    texts: list[tuple[str, pygame.Rect]], scale: float, size: tuple[int, int]
+) -> None:
+    menu, renderer = Menu(), Renderer(size, scale)
+    menu.resume = lambda: words.LEFT_UNFINISHED.format(
+        scene=words.title("gravity_hopper"), grains=1234, when=words.AGO_HOURS.format(count=12)
+    )
+    for _ in range(12):  # from the top to the foot
+        menu.draw(renderer.painter(), "mixed", "")
+        menu.wheel(-3.0, 60)
+    nothing_cut(texts, size)
+
+
+@pytest.mark.parametrize("size", SIZES, ids=str)
+@pytest.mark.parametrize("scale", [1.0, 2.0, 3.0])
+def test_the_page_of_keys(
+    texts: list[tuple[str, pygame.Rect]], scale: float, size: tuple[int, int]
+) -> None:
+    renderer = Renderer(size, scale)
+    places = draw_help(renderer.painter())
+    scroll = 0
+    while scroll < places.most_scroll:  # what does not fit is seen by scrolling
+        scroll = min(scroll + places.view.height // 2, places.most_scroll)
+        places = draw_help(renderer.painter(), scroll)
+    nothing_cut(texts, size)
+    for _, rows in words.help_groups():
+        for key, meaning in rows:
+            assert {key, meaning} <= {content for content, _ in texts}
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0])
+def test_cards_of_tours_fit_above_the_panel(
+    texts: list[tuple[str, pygame.Rect]], scale: float
+) -> None:
+    size = (round(1280 * scale), round(720 * scale))
+    renderer = Renderer(size, scale)
+    for code in language.available():
+        language.use(code)
+        for scene in tours.scenes():
+            steps = tours.steps(scene)
+            for index, step in enumerate(steps):
+                say, do, why = (
+                    words.tour_text(scene, step.key, part) for part in ("say", "do", "why")
+                )
+                page = TourPage(
+                    words.title(scene), index, len(steps), say, do, True, why, words.TOUR_NEXT
+                )
+                width = round(CARD * scale)
+                height = card_layout(page, Type(scale), width).height
+                assert height < 0.7 * size[1], (scene, step.key)
+                painter = renderer.painter()
+                texts.clear()
+                card = pygame.Rect(10, 10, width, height)
+                draw_tour_card(painter, card, page, focus="", hover="")
+                painter.flush()
+                nothing_cut(texts, size)
+                written = " ".join(content for content, _ in texts)
+                assert all(part in written for part in (say, do, why))
+                for content, place in texts:
+                    assert card.contains(place), (scene, step.key, content)
