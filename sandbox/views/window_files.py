@@ -59,7 +59,7 @@ class FilesSection:
         if name == "files/name":
             self.stem = Path(str(value).strip()).name.removesuffix(SUFFIX)
         elif name == "files/save":
-            self.app.save(self._stem())
+            self.app.actions.save(self._stem())
             self._looked = -STALE
         else:
             self._open(name.removeprefix(OPEN))

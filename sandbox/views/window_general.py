@@ -113,12 +113,12 @@ class GeneralSection:
         del done
         what = name.partition("/")[2]
         if what == "packing":
-            self.app.change_packing(str(value))
+            self.app.actions.change_packing(str(value))
         elif what == "view":
-            self.app.change_view(str(value))
+            self.app.actions.change_view(str(value))
         elif what == "seed":
             try:
-                self.app.change_seed(int(str(value).strip()))
+                self.app.actions.change_seed(int(str(value).strip()))
             except (ValueError, InputError):
                 self.app.toast(words.SEED_WRONG)
         else:

@@ -68,6 +68,6 @@ class LooksSection:
             case "theme":
                 self.app.renderer.set_theme(str(value))
             case "size":
-                self.app.rescale(float(str(value)))
+                self.app.actions.rescale(float(str(value)))
             case "language":
-                self.app.speak(str(value))
+                self.app.actions.speak(str(value))

@@ -204,7 +204,7 @@ def test_a_number_is_typed(desk: Desk) -> None:
     assert desk.app.focus.ring == NU
     desk.type("7")
     desk.key(pygame.K_RETURN)
-    assert "between" in desk.app._toasts[-1][1]
+    assert "between" in desk.app.notices.latest
     desk.type("-")
     desk.key(pygame.K_ESCAPE)
     assert len(sent(desk)) == 1
@@ -231,7 +231,7 @@ def test_seed_is_stepped_and_typed(desk: Desk) -> None:
     desk.until(lambda: sent(desk)[-1] == Change("seed", 77))
     desk.type("7-")
     desk.key(pygame.K_RETURN)
-    assert desk.app._toasts[-1][1] == words.SEED_WRONG
+    assert desk.app.notices.latest == words.SEED_WRONG
 
 
 def test_sections_fold_by_keyboard(desk: Desk) -> None:

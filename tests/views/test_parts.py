@@ -134,7 +134,7 @@ def test_bar_by_keyboard(desk: Desk) -> None:
 
 def test_nothing_kept_says_so(desk: Desk) -> None:
     desk.key(pygame.K_LEFTBRACKET, "[")
-    assert desk.app._toasts[-1][1] == words.NOTHING_KEPT
+    assert desk.app.notices.latest == words.NOTHING_KEPT
     assert sent(desk) == []
 
 

@@ -52,7 +52,7 @@ def recording(desk: Desk) -> bool:
 
 
 def said(desk: Desk) -> str:
-    return desk.app._toasts[-1][1] if desk.app._toasts else ""
+    return desk.app.notices.latest
 
 
 def test_compare_and_back(desk: Desk) -> None:

@@ -364,7 +364,7 @@ def test_screenshot_that_cannot_be_saved_says_so(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(window_display, "atomic_write", full)
     running.key(pygame.K_F12)
-    assert "No space left" in running.app._toasts[-1][1]
+    assert "No space left" in running.app.notices.latest
     assert list(tmp_path.iterdir()) == []
 
 
@@ -384,9 +384,9 @@ def test_events_of_an_unbuilt_scene_do_no_harm(desk: Desk) -> None:
 
 
 def test_hint_until_the_first_grab(running: Desk) -> None:
-    assert running.app._notices(running.app.run.snapshot) == (words.HINT,)
+    assert running.app.notices.lines("") == (words.HINT,)
     running.press(running.handle_place())
-    assert running.app._notices(running.app.run.snapshot) == ()
+    assert running.app.notices.lines("") == ()
 
 
 def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
