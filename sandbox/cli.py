@@ -136,6 +136,14 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         help="frames a second (default: 30)",
     )
 
+    record.add_argument(
+        "--every",
+        type=argument(arguments.whole_number(1, 1000)),
+        default=1,
+        metavar="N",
+        help="a frame for every N increments (default: 1)",
+    )
+
     replay = command("replay", _replay, "Repeat a logged run; say whether it came out the same.")
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
@@ -304,7 +312,7 @@ def _play(options: argparse.Namespace) -> int:
 
 
 def _record(options: argparse.Namespace) -> int:
-    output = _output(options, options.size, options.fps)
+    output = _output(options, options.size, options.fps, options.every)
     if output is None:
         raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
     sessions = _sessions(options)
@@ -373,7 +381,9 @@ def _study(options: argparse.Namespace) -> int:
     return studies.STUDIES[options.name](options)
 
 
-def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> Output | None:
+def _output(
+    options: argparse.Namespace, size: tuple[int, int], fps: float, every: int = 1
+) -> Output | None:
     """Where to write, checked; None if nothing is asked for."""
     from sandbox import language
     from sandbox.views.record import Output
@@ -392,7 +402,7 @@ def _output(options: argparse.Namespace, size: tuple[int, int], fps: float) -> O
     arguments.check_different({"--out": film, "--data": table})
     if not (film or table):
         return None
-    return Output(film, table, size, fps, options.view, options.theme)
+    return Output(film, table, size, fps, options.view, options.theme, every)
 
 
 def _session(options: argparse.Namespace) -> Session:

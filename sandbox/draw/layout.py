@@ -16,6 +16,7 @@ TIMELINE = 38.0
 PLOT_LEAST = 104.0
 PLOT_MOST = 190.0
 PLOT_SHARE = 0.20  # of the window's height
+PLOT_SHARE_OF_MANY = 0.24  # the same side by side: the curves are what it is about
 CANVAS_SHARE = 0.45  # the canvases never get less than this
 PLOT_WIDTH = 300.0  # a narrower strip could not hold its labels
 PANEL = 316.0  # width at scale 1 [px]
@@ -57,7 +58,8 @@ def layout(
     status = min(round(STATUS * scale), height)
     header = round(HEADER * scale)
     line = round(TIMELINE * scale) if timeline else 0
-    plot = round(min(max(PLOT_SHARE * height, PLOT_LEAST * scale), PLOT_MOST * scale))
+    share = PLOT_SHARE if panes == 1 else PLOT_SHARE_OF_MANY
+    plot = round(min(max(share * height, PLOT_LEAST * scale), PLOT_MOST * scale))
     least = CANVAS_SHARE * height
     side = round(PANEL * scale) if panel else 0
     if side > PANEL_SHARE * width:

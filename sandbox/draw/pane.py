@@ -16,7 +16,7 @@ from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.frame import Frame
 
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
-SWATCH = 26.0  # of the packing's curve
+SWATCH = 31.0  # of the packing's curve
 CAPTION_LINES = 2  # at the foot of a canvas, and one more on a narrow one
 NARROW = 330.0  # at scale 1 [px]
 FOOT_SHARE = 0.15  # of a canvas' height, for them, at most
@@ -53,7 +53,7 @@ def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
     dash = [length * scale for length in packing_dash(frame.packing)]
     ends = np.array([left, left + SWATCH * scale])
     colour = packing_colour(frame.packing)
-    painter.polyline(ends, np.array([middle, middle]), 4.0 * scale, colour, strip, dash)
+    painter.polyline(ends, np.array([middle, middle]), 3.0 * scale, colour, strip, dash)
     x = left + SWATCH * scale + round(8 * scale)
     name = words.PACKINGS.get(frame.packing, frame.packing)
     name = type_.shortened(name, BODY, right - x, bold=True)

@@ -14,7 +14,7 @@ from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
 
 MARK = 6.0  # half the size of an event's mark at scale 1 [px]
-SWATCH = 22.0  # length of the line before a name at scale 1 [px]
+SWATCH = 31.0  # length of the line before a name at scale 1 [px]
 LEADER = 18.0  # room for the thread from a curve's end to its name at scale 1 [px]
 
 # Corners of the marks, the y axis up; an arch points up, an avalanche down, a clog is a block.

@@ -137,7 +137,7 @@ def packing_colour(packing: str) -> int:
 
 def packing_dash(packing: str) -> tuple[float, ...]:
     """The dash of a packing's curve, lengths on and off at scale 1 [px]: never colour alone."""
-    return {"regular": (), "auxetic": (11.0, 5.0)}.get(packing, (4.0, 4.0))
+    return {"regular": (), "auxetic": (12.0, 7.0)}.get(packing, (3.0, 6.0))
 
 
 def _cividis_table() -> Colours:

@@ -33,6 +33,7 @@ class Output:
     fps: float = 30.0
     view: str = "kind"
     theme: str = "dark"
+    every: int = 1  # increments to a frame of the film
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ def run(
     """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
     The sessions, several of them side by side, are built already. A frame is written after each increment, the table at the
-    end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    end; in a film of every n-th increment, after each n-th. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
     """
     from tqdm import tqdm
 
@@ -109,9 +110,9 @@ def run(
                     if finished is None:
                         break
                     if finished:
-                        if writer is not None and draw is not None:
-                            writer.write(draw([session.frame() for session in sessions]))
                         increments += 1
+                        if writer and draw and output and increments % output.every == 0:
+                            writer.write(draw([session.frame() for session in sessions]))
                         bar.update()
     except KeyboardInterrupt:
         interrupted = True
