@@ -150,7 +150,6 @@ class GravityHopper(Scene):
             packing_fraction=shape.fraction,
             progress=progress,
         )
-        count = len(packed)
         return Setup(
             packing=packed,
             world=RigidWorld([funnel]),
@@ -162,12 +161,7 @@ class GravityHopper(Scene):
             friction=float(values["friction"]),
             gravity=gravity,
             drag=drag,
-            curve=Curve(
-                "increments",
-                "grains that have left",
-                None,
-                lambda now, _: float(count - len(now)),
-            ),
+            curve=Curve("increments", "grains that have left", None, None),
         )
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:

@@ -22,6 +22,7 @@ from core.generate import KINDS, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Settings
 from core.rigid import Point, RigidWorld
+from scenes.accuracy import Accuracy, accuracy_of
 from scenes.parameter import Parameter, Value
 
 Values = Mapping[str, Value]
@@ -58,7 +59,7 @@ class Curve:
     stroke_label: str  # with its unit
     force_label: str  # with its unit
     stroke: Callable[[Packing, Increment], float] | None  # None: the number of increments
-    force: Callable[[Packing, Increment], float]
+    force: Callable[[Packing, Increment], float] | None  # None: the number of grains that have left
 
 
 @dataclass
@@ -169,6 +170,11 @@ class Scene(ABC):
     parameters: ClassVar[tuple[Parameter, ...]]
     default_steps: ClassVar[int]
     packings: ClassVar[tuple[str, ...]] = KINDS
+
+    @property
+    def accuracy(self) -> Accuracy:
+        """What `study accuracy` found about the scene at its defaults."""
+        return accuracy_of(self.name)
 
     def settings(self, overrides: Mapping[str, object] | None = None) -> dict[str, Value]:
         """All parameters, defaults unless overridden (by values or by typed text). Raises InputError for a bad name or value."""

@@ -454,6 +454,17 @@ def test_claims_about_the_scene_end_where_it_was_edited() -> None:
     assert all(check.holds is not False for check in session.checks())
 
 
+def test_placed_grains_have_not_left() -> None:
+    session = built("gravity_hopper", grains=40)
+    x0, _, x1, y1 = session.run.setup.bounds
+    for k in range(3):
+        do(session, Place(0.5 * (x0 + x1) - 4.0 + 3.0 * k, y1 - 2.0, "regular"))
+    frame = session.frame()
+    assert frame.grains > 40
+    assert frame.curve_force[-1] == frame.grains_out
+    assert all(check.holds is not False for check in session.checks())
+
+
 def test_an_edit_is_no_avalanche() -> None:
     session = built("avalanches", grains=60)
     do(session, *[Protocol(True)] * 10)
