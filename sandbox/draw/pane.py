@@ -19,19 +19,21 @@ STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
 SWATCH = 31.0  # of the packing's curve
 CAPTION_LINES = 2  # at the foot of a canvas, and one more on a narrow one
 NARROW = 330.0  # at scale 1 [px]
-FOOT_SHARE = 0.15  # of a canvas' height, for them, at most
+FOOT_SHARE = 0.18  # of a canvas' height, for them, at most
 MOST_LINES = 3  # on a plate
 COVERED = 0.4  # of a canvas' height, by plates, at most
 FRESH = 40  # an event is spoken of for so many increments
 
 
 def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
-    """A canvas cut into its strip, what is left for the grains, and a foot for words, of no height on a small canvas."""
+    """A canvas cut into its strip, what is left for the grains, and a foot for words.
+
+    On a small canvas the foot has fewer lines, or no height.
+    """
     strip = min(round(STRIP * type_.scale), canvas.height // 4)
-    lines = CAPTION_LINES + (canvas.width < NARROW * type_.scale)
-    foot = lines * type_.height(BODY) + round(6 * type_.scale)
-    if foot > FOOT_SHARE * canvas.height:
-        foot = 0
+    most = CAPTION_LINES + (canvas.width < NARROW * type_.scale)
+    feet = [lines * type_.height(BODY) + round(6 * type_.scale) for lines in range(most, 0, -1)]
+    foot = next((height for height in feet if height <= FOOT_SHARE * canvas.height), 0)
     top, bottom = canvas.top + strip, canvas.bottom - foot
     return (
         pygame.Rect(canvas.left, canvas.top, canvas.width, strip),
