@@ -10,6 +10,7 @@ Units are in brackets: lengths in the reference grain radius ``R``, forces in ``
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -157,6 +158,7 @@ class Frame:
     spin: FloatArray | None = None  # (N,) [rad]
 
     # How far every grain is from equilibrium: its unbalanced force; empty where nobody knows.
+    force_error: float = math.nan  # estimate for the handle's force, over its mean magnitude so far
     residual_force: FloatArray = field(default_factory=_no_numbers)  # (N,) [k R]
 
     # What is set, and what can be gone back to.

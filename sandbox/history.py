@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
 from typing import Literal
@@ -25,6 +26,12 @@ class Row:
     resisting: (
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
+    force_error: float = math.nan  # estimate for the force on the handle [k R], see ``reading``
+
+    @property
+    def magnitude(self) -> float:
+        """Of the force on the handle [k R]; where the handle is a periodic cell, of what the scene plots."""
+        return math.hypot(self.fx, self.fy) or abs(self.resisting)
 
 
 EventKind = Literal["clog", "arch", "avalanche"]
@@ -52,6 +59,7 @@ _HEADER = (
     "FIRE iterations",
     "stop reason",
     "force against the drive [k R]",
+    "estimated error of the force on the handle [k R]",
 )
 
 
@@ -60,7 +68,7 @@ class History:
 
     def __init__(self) -> None:
         self._rows: list[Row] = []
-        self._curve = np.empty((2, 256))
+        self._curve = np.empty((3, 256))  # stroke, force, sum of all magnitudes so far
         self.events: tuple[Event, ...] = ()  # the newest last
 
     def __len__(self) -> int:
@@ -74,7 +82,8 @@ class History:
         count = len(self._rows)
         if count == self._curve.shape[1]:
             self._curve = np.concatenate([self._curve, np.empty_like(self._curve)], axis=1)
-        self._curve[:, count] = row.stroke, row.resisting
+        total = (self._curve[2, count - 1] if count else 0.0) + row.magnitude
+        self._curve[:, count] = row.stroke, row.resisting, total
         self._rows.append(row)
 
     def announce(self, event: Event) -> None:
@@ -94,7 +103,13 @@ class History:
     @property
     def curve(self) -> np.ndarray:
         """Stroke [R] and force against the drive [k R], (2, M): a view of rows that never change again."""
-        return self._curve[:, : len(self._rows)]
+        return self._curve[:2, : len(self._rows)]
+
+    @property
+    def mean_magnitude(self) -> float:
+        """Mean magnitude of the force on the handle so far [k R]; 0 of nothing."""
+        count = len(self._rows)
+        return float(self._curve[2, count - 1]) / count if count else 0.0
 
     def header(self) -> list[str]:
         """Column names with units."""

@@ -25,6 +25,8 @@ def _scene_text(scene: Any) -> str:
     lines += textwrap.wrap(scene.question, _WIDTH, initial_indent="  ", subsequent_indent="  ")
     lines.append(f"  packings: {', '.join(scene.packings)}")
     lines.append(f"  scripted run: {scene.default_steps} increments")
+    if scene.accuracy.statement:
+        lines.append(f"  at the defaults: {scene.accuracy.statement}")
     rows = [
         (p.name, _value(p.default), p.unit, f"{_value(p.low)} to {_value(p.high)}", p.help)
         for p in scene.parameters
@@ -53,6 +55,7 @@ def _scene_data(scene: Any) -> dict[str, Any]:
         "about": scene.about,
         "packings": list(scene.packings),
         "default_steps": scene.default_steps,
+        "accuracy": scene.accuracy.statement,
         "parameters": [
             {
                 "name": p.name,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,6 +90,7 @@ def take(view: View) -> Frame:
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
         residual_force=view.last.unbalanced.copy(),
+        force_error=_force_error(view.history),
         settings=dict(view.settings),
         first_kept=view.kept[0],
         last_kept=view.kept[1],
@@ -96,6 +98,12 @@ def take(view: View) -> Frame:
         can_redo=view.can_redo,
         events=view.history.events,
     )
+
+
+def _force_error(history: History) -> float:
+    """The newest estimate over the mean magnitude of the force so far; nan where there was none."""
+    scale = history.mean_magnitude
+    return history[-1].force_error / scale if scale > 0.0 else math.nan
 
 
 def _contact_lines(

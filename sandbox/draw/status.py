@@ -15,6 +15,8 @@ from sandbox.draw.text import BODY
 from sandbox.draw.theme import Theme, mix
 from sandbox.frame import CONVERGED, Frame
 
+ROUGH = 0.2  # an estimated error of the force on the handle above which settled is not yet green
+
 
 @dataclass(frozen=True, slots=True)
 class Lamp:
@@ -41,17 +43,23 @@ def lamp(frame: Frame, theme: Theme) -> Lamp:
     if frame.stop_reason in words.BROKEN:
         return Lamp(theme.bad, words.STOPPED[frame.stop_reason], "")
     within = ""
+    estimated = 0.0 <= frame.force_error <= 1.0
     if not math.isfinite(frame.residual):
         error = words.NO_FORCES
     elif frame.residual > 1.0:
         error = words.UNKNOWN_FORCES
+    elif estimated:
+        bound = percent(max(frame.force_error, 1e-6))
+        error = words.HANDLE_FORCE_ERROR.format(error=bound)
+        within = words.WITHIN.format(error=bound)
     else:
         bound = percent(max(frame.residual, 1e-6))
         error, within = words.FORCE_ERROR.format(error=bound), words.WITHIN.format(error=bound)
     if frame.busy:
         return Lamp(theme.working, words.SETTLING, error, within)
     if frame.stop_reason == CONVERGED:
-        return Lamp(theme.good, words.SETTLED, error, within)
+        rough = estimated and frame.force_error > ROUGH
+        return Lamp(theme.working if rough else theme.good, words.SETTLED, error, within)
     reason = words.STOPPED.get(frame.stop_reason, frame.stop_reason)
     near = frame.residual <= 10.0 * frame.tolerance
     return Lamp(theme.working if near else theme.bad, reason, error, within)

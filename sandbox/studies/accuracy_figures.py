@@ -10,7 +10,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.studies.figures import STYLE
+from sandbox.studies.figures import STYLE, plain_numbers
 
 Summary = Mapping[str, Any]
 Points = Sequence[tuple[float, float]]
@@ -91,6 +91,7 @@ def _line(axes: Any, points: Points, **style: Any) -> None:
 def _logarithmic(axes: Any, x: str, y: str) -> None:
     axes.set_xscale("log")
     axes.set_yscale("log")
+    plain_numbers(axes.xaxis, *axes.get_xlim())
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.legend()

@@ -30,6 +30,7 @@ Stopping = Callable[[], bool]
 DATA_VERSION = 1  # raise it when a job measures something else
 TIGHT = 1e-8  # relative residual of the walks that say where paths part
 CHECKED = 1e-9  # relative residual asked of the Newton polish
+LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
 SLICE = 200  # force evaluations between two looks of a window
 PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, "paper's chart": paper_chart}
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
@@ -109,7 +110,7 @@ class Bench:
             "bifurcation": self.bifurcation,
             "reference": self._described(),
             "walks": [summary for summary, _ in grid],
-            "estimate": self._estimates([path for summary, path in grid if summary["step"] == 1.0]),
+            "estimate": self._estimates([path for _, path in grid if path.step == 1.0]),
             "budgets": [self._timed(knobs)[0] for knobs in self._budgets()],
             "peers": {
                 name: [
@@ -157,18 +158,18 @@ class Bench:
         return found
 
     def _bifurcation(self) -> float | None:
-        """Where two tight walks part by more than ``APART``: of two tolerances; of two increments if it has no memory."""
+        """Where two tight walks part by more than ``APART``: of two tolerances, of two increments.
+
+        Friction and drag give the path a memory, and errors in proportion to the increment: there the coarser ones do not count.
+        """
         sweeps = self.sweeps
-        tight = [Knobs(tolerance=TIGHT, step=sweeps.reference_step)]
+        tight = [
+            Knobs(tolerance=TIGHT, step=sweeps.reference_step),
+            Knobs(tolerance=TIGHT, step=2.0 * sweeps.reference_step),
+        ]
         if self.start.friction is None and self.start.setup.drag == 0.0:
-            tight += [
-                Knobs(tolerance=sweeps.reference_tolerance, step=2 * sweeps.reference_step),
-                *(
-                    Knobs(tolerance=TIGHT, step=step)
-                    for step in (*sweeps.steps, 1.0)
-                    if step <= 1.0
-                ),
-            ]
+            shares = (*sweeps.steps, 1.0)
+            tight += [Knobs(tolerance=TIGHT, step=share) for share in shares if share <= 1.0]
         parted = []
         for knobs in tight:
             path = self.walk(knobs)
@@ -219,14 +220,21 @@ class Bench:
                 yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)[0]
 
     def _estimates(self, paths: list[Walk]) -> list[tuple[float, float]]:
-        """(residual times mean contact force, error of the force) of every increment before the bifurcation [k R]."""
+        """(residual times mean contact force, error of the force) of every increment before the bifurcation [k R].
+
+        The error is that against the tightest walk with the same increments: what the residual alone is to blame for.
+        """
+        tightest = min(paths, key=lambda path: path.looks[0].residual)
         found = []
         for path in paths:
+            if path is tightest:
+                continue
             for place in self._places(path.step):
-                look, exact = path.at(place), self.reference.at(place)
-                if look is not None and exact is not None:
-                    error = float(np.hypot(*(look.force - exact.force)))
-                    found.append((look.residual * look.scale, error))
+                look, exact = path.at(place), tightest.at(place)
+                if look is None or exact is None or look.residual < LEAST_RESIDUAL:
+                    continue
+                error = float(np.hypot(*(look.force - exact.force)))
+                found.append((look.residual * look.scale, error))
         return found
 
     def _stiffness(self, stiffness: float) -> dict[str, Any]:
@@ -276,8 +284,12 @@ class Bench:
         return all(np.array_equal(a.state, b.state) for a, b in zip(at_once, sliced, strict=True))
 
     def _described(self) -> dict[str, Any]:
+        """The reference, and how far one of twice its increments is off: its own error where that is in proportion to them."""
         path = self.reference
+        coarser = self.walk(Knobs(tolerance=TIGHT, step=2.0 * path.step))
+        off = [error["force"] for error in self._compared(coarser)]
         return {
+            "increment_error": rms(off),
             "tolerance": self.sweeps.reference_tolerance,
             "step": path.step,
             "residual": float(np.max([look.residual for look in path.looks])),

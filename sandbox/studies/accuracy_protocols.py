@@ -33,7 +33,7 @@ PROTOCOLS: dict[str, Protocol] = {
     "couette": Protocol(lead=20, length=4, starts=3, beyond=30),
     "avalanches": Protocol(lead=40, length=8, starts=4, beyond=60),
     "intruder": Protocol(lead=20, length=4, starts=4, beyond=40),
-    "hopper": Protocol(lead=90, length=4, starts=3, beyond=30, least_force=0.1),
+    "hopper": Protocol(lead=100, length=4, starts=3, beyond=30, least_force=0.1),
     "gravity_hopper": Protocol(lead=20, length=4, starts=3, beyond=30),
 }
 
@@ -84,14 +84,14 @@ QUICK = Sweeps(
 
 
 def protocol(scene: str, quick: bool) -> Protocol:
-    """The protocol of a scene: a plain one where none is written down. Quick: one beginning, half as long."""
+    """The protocol of a scene: a plain one where none is written down. Quick: one or two beginnings, half as long."""
     whole = PROTOCOLS.get(scene, Protocol(lead=10, length=4, starts=2))
     if not quick:
         return whole
     return Protocol(
         lead=whole.lead,
         length=max(2, whole.length // 2),
-        starts=1,
+        starts=min(whole.starts, 2) if whole.beyond else 1,
         beyond=min(whole.beyond, 10),
         least_force=whole.least_force,
         settings=whole.settings,

@@ -29,7 +29,9 @@ def percent(value: float | None) -> str:
         return "—"
     if value == 0.0:
         return "0"
-    return f"{100.0 * value:.2g} %" if value >= 1e-4 else f"{value:.0e}"
+    if value >= 1.0:
+        return f"{100.0 * value:.0f} %"
+    return f"{100.0 * value:.2g} %" if value >= 1e-5 else f"{100.0 * value:.0e} %"
 
 
 def power(value: float | None) -> str:
@@ -98,7 +100,9 @@ chain rule included (some 10 to 20 % of an iteration); it is judged by the force
 
 REFERENCE = """Check: the first increment of the reference solved again by L-BFGS-B and Newton with a Hessian of finite \
 differences; and the forces of the slow twin, written from the equations in another chart, at the relaxed start, \
-relative to the mean contact force. With friction or drag the twin is compared in the tests instead."""
+relative to the mean contact force. With friction or drag the twin is compared in the tests instead. A walk with twice the \
+reference's increments: with friction or drag, where errors are in proportion to the increment, that is about the \
+error of the reference itself."""
 
 STIFFNESS = """Against C → ∞, extrapolated by a parabola in 1/C through the three stiffest; the doubt is its distance from a \
 line. C = 50 is what this program takes for the scenes; the paper's own runs have C between 42 and 1022."""
@@ -189,6 +193,7 @@ def _references(summaries: Mapping[str, Summary]) -> Iterator[Row]:
         "increment",
         "largest residual",
         "converged",
+        "twice the increment: force",
         "force, Newton",
         "positions [R]",
         "slow twin",
@@ -200,6 +205,7 @@ def _references(summaries: Mapping[str, Summary]) -> Iterator[Row]:
             f"1/{1.0 / reference['step']:.0f} of {summary['increment']:g} R",
             power(reference["residual"]),
             f"{100.0 * reference['converged']:.0f} %",
+            percent(reference["increment_error"]),
             power(check["force"]),
             power(check["position"]),
             power(check["twin_residual"]),

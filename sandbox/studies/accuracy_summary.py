@@ -141,12 +141,14 @@ def _reference(jobs: Sequence[Job]) -> dict[str, float]:
         "residual": max(one["residual"] for one in found),
         "converged": float(np.mean([one["converged"] for one in found])),
         "seconds": sum(one["seconds"] for one in found),
+        "increment_error": rms([one["increment_error"] for one in found]),
     }
 
 
 def _overlap(jobs: Sequence[Job]) -> dict[str, float]:
-    """Root of the mean squares over starts."""
-    return {name: rms([job["overlap"][name] for job in jobs]) for name in jobs[0]["overlap"]}
+    """The middle one over starts: one that gives way to another balance says nothing about the law."""
+    names = jobs[0]["overlap"]
+    return {name: float(np.median([job["overlap"][name] for job in jobs])) for name in names}
 
 
 def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
@@ -164,8 +166,9 @@ def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
                 doubts.append(doubt / scale if scale > 0.0 else math.nan)
                 for error, value in zip(errors, curve, strict=True):
                     error.append((value - limit) / scale if scale > 0.0 else math.nan)
-        found[name] = [rms(error) for error in errors]
-        found[f"{name}_doubt"] = rms(doubts)
+        # The middle ones: where grains have found another balance, the curve of that place says nothing about C.
+        found[name] = [float(np.median(np.abs(error))) for error in errors]
+        found[f"{name}_doubt"] = float(np.median(doubts))
     solving = [float(np.mean([rows[k]["solving"] for rows in groups])) for k in range(len(values))]
     middle = [k for k, value in enumerate(values) if value <= 200.0]
     return {

@@ -29,10 +29,13 @@ Floats = NDArray[np.float64]
 Solve = Callable[[Relaxation, float], int]  # relaxes to a tolerance by other means; its evaluations
 
 TIGHT = 1e-10  # relative residual of the start and of the reference
-MOST_ITERATIONS = 400_000  # of one increment in a walk that is to converge
+MOST_ITERATIONS = (
+    60_000  # of one increment: where grains slide on one another there may be no end to it
+)
 LEAD_TOLERANCE = 1e-3  # on the way to the start
 LEAD_ITERATIONS = 20_000
 MOST_LEAD = 3  # times its length that a lead may take to feel a force
+RESTS = 3  # at the start with friction, which is frozen anew each time: until caps and forces agree
 LEAST_CONTACTS = 2  # of a grain that bears force
 
 
@@ -143,7 +146,8 @@ def begin(
         if done >= lead and np.hypot(*look.force) >= least_force:
             break
     if setup.drag == 0.0 and setup.relaxes:
-        walker.rest(TIGHT)
+        for _ in range(1 if friction is None else RESTS):
+            walker.rest(TIGHT)
     engine = walker.engine
     return Start(
         scene, values, setup, engine.packing.copy(), setup.world.placement(), engine.friction, done
@@ -262,8 +266,9 @@ class Walker:
         report = done.report
         drive = setup.handles[0].body
         if drive == BOX or not setup.relaxes:
-            assert setup.curve is not None
-            force = np.array([setup.curve.force(packing, done), 0.0])
+            measure = None if setup.curve is None else setup.curve.force
+            assert measure is not None
+            force = np.array([measure(packing, done), 0.0])
         else:
             force = done.reactions[setup.world.index(drive), :2].copy()
         stress = observables.stress(pairs, self.start.area, bodies, packing)

@@ -70,15 +70,15 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
     axes.set_ylabel(panel.y_label)
     if panel.log_x:
         axes.set_xscale("log")
-        _plain_numbers(axes.xaxis, *axes.get_xlim())
+        plain_numbers(axes.xaxis, *axes.get_xlim())
     if panel.log_y:
         axes.set_yscale("log")
-        _plain_numbers(axes.yaxis, *axes.get_ylim())
+        plain_numbers(axes.yaxis, *axes.get_ylim())
     if any(line.label for line in panel.lines):
         axes.legend()
 
 
-def _plain_numbers(axis: Any, low: float, high: float) -> None:
+def plain_numbers(axis: Any, low: float, high: float) -> None:
     """Numbers along a logarithmic axis: powers of ten, over a short range 2 and 5 times these as well."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
