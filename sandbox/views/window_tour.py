@@ -37,7 +37,7 @@ MARGIN = 10.0  # round it, at scale 1 [px]
 WIDEST = 0.94  # of the canvas
 SHARE = 0.5  # of its width, unless letters would become smaller than at scale 1
 LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
-KNOB = 30.0  # room round a handle at scale 1 [px]
+KNOB = 20.0  # room round a handle at scale 1 [px]
 HANDLE_COST = 10_000  # a covered handle counts as so many covered grains
 PLOT_COST = 1_000  # and a covered plot
 
