@@ -78,6 +78,11 @@ class Checkpoints:
         """All that can be recalled."""
         return tuple(self._increments)
 
+    def future(self, length: int) -> History | None:
+        """The history that goes on after so many rows, if later increments are kept."""
+        newest = self._kept[-1]
+        return newest.history if newest.length > length else None
+
     def at(self, increment: int) -> Checkpoint:
         """The checkpoint after that increment, or the nearest before it, or else the first."""
         return self._kept[max(bisect_right(self._increments, increment) - 1, 0)]

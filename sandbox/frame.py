@@ -100,6 +100,15 @@ class HandleState:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Ahead:
+    """What came after the state that is shown, and is kept until something moves."""
+
+    stroke: FloatArray  # (K,) of the curve, from the increment after the one that is shown
+    force: FloatArray  # (K,)
+    events: tuple[Event, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Frame:
     """Immutable snapshot of a running scene (N grains, M increments so far)."""
 
@@ -136,7 +145,9 @@ class Frame:
     residual: float  # largest generalised force relative to the mean contact force
     tolerance: float  # the residual that counts as converged
     iterations: int  # of the minimiser, in this increment
-    stop_reason: str  # "converged", "budget", "iteration limit", "not finite", "collapsed" or "sunk"
+    stop_reason: (
+        str  # "converged", "budget", "iteration limit", "not finite", "collapsed" or "sunk"
+    )
     busy: bool  # an increment is being relaxed: the hand waits
     protocol: bool  # the scripted drive is on
     notices: tuple[str, ...]  # plain words for the person at the window
@@ -168,6 +179,7 @@ class Frame:
     can_undo: bool = False
     can_redo: bool = False
     events: tuple[Event, ...] = ()  # all since the start, the newest last
+    ahead: Ahead | None = None  # only after a recall
 
     # What was asked for and could not be done: how often, and why the last time, in plain words.
     refusals: int = 0

@@ -303,6 +303,7 @@ class Run(Driven):
                 drive=self.setup.handles[0],
                 course=self._course,
                 kept=(self.checkpoints.first, self.checkpoints.last),
+                future=self.checkpoints.future(len(self.history)),
                 can_undo=can_undo,
                 can_redo=can_redo,
             )

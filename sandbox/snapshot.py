@@ -14,7 +14,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
 from sandbox.course import Course
-from sandbox.frame import BodyShape, Contacts, Frame, HandleState
+from sandbox.frame import Ahead, BodyShape, Contacts, Frame, HandleState
 from sandbox.history import History
 from scenes.scene import Handle, Scene, Setup, Values
 from scenes.text import Text
@@ -35,6 +35,7 @@ class View:
     drive: Handle
     course: Course
     kept: tuple[int, int]  # first and last increment that can be recalled
+    future: History | None  # after a recall: the whole course of events that is kept
     can_undo: bool
     can_redo: bool
 
@@ -97,6 +98,7 @@ def take(view: View) -> Frame:
         can_undo=view.can_undo,
         can_redo=view.can_redo,
         events=view.history.events,
+        ahead=_ahead(view),
     )
 
 
@@ -104,6 +106,16 @@ def _force_error(history: History) -> float:
     """The newest estimate over the mean magnitude of the force so far; nan where there was none."""
     scale = history.mean_magnitude
     return history[-1].force_error / scale if scale > 0.0 else math.nan
+
+
+def _ahead(view: View) -> Ahead | None:
+    """What is kept of later increments."""
+    if view.future is None:
+        return None
+    shown, last = len(view.history), view.kept[1]
+    stroke, force = view.future.curve[:, shown : last + 1]
+    later = tuple(e for e in view.future.events if shown <= e.increment <= last)
+    return Ahead(stroke, force, later)
 
 
 def _contact_lines(
@@ -174,14 +186,12 @@ def _shape(body: RigidBody, box: PeriodicBox | None) -> BodyShape:
     discs = discs.reshape(-1, 3)
     if box is not None and np.isfinite(box.width):
         discs[:, 0] %= box.width
-    segments = [
-        (*body.to_world([(x0, y0), (x1, y1)]).ravel(), radius)
-        for x0, y0, x1, y1, radius in body.segments
-    ]
+    rows = np.array(body.segments, dtype=np.float64).reshape(-1, 5)
+    ends = body.to_world(rows[:, :4].reshape(-1, 2)).reshape(-1, 4)
     return BodyShape(
         name=body.name,
         role=body.role,
         discs=discs,
-        segments=np.array(segments, dtype=np.float64).reshape(-1, 5),
+        segments=np.column_stack([ends, rows[:, 4:]]),
         polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
     )

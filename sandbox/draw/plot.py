@@ -35,6 +35,7 @@ class Curve:
     name: str = ""  # in the present language
     faint: bool = False  # of an earlier run
     events: tuple[Event, ...] = ()
+    ahead: tuple[Floats, Floats] | None = None  # how it went on, from where it ends here
 
 
 def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -113,7 +114,7 @@ def draw_plot(
     painter.fill(rect, theme.panel)
     painter.fill(pygame.Rect(rect.left, rect.top, rect.width, max(round(scale), 1)), theme.hairline)
     parts = [finite_part(curve) for curve in curves]
-    axes = limits(parts)
+    axes = limits([*parts, *(curve.ahead for curve in curves if curve.ahead is not None)])
     text = type_.height(SMALL)
     pad = round(8 * scale)
     force_ticks = ticks(axes[2], axes[3], max(int((rect.height - 3 * text) / (1.6 * text)), 1))
@@ -208,6 +209,10 @@ def _draw_curve(
     scale = painter.scale
     x, y = thinned(box.x(part[0]), box.y(part[1]))
     dash = [length * scale for length in curve.dash]
+    if curve.ahead is not None:
+        later = thinned(box.x(curve.ahead[0]), box.y(curve.ahead[1]))
+        faint = mix(curve.colour, painter.theme.panel, FAINT)
+        painter.polyline(*later, FAINT_WIDTH * scale, faint, inside, dash)
     width = (FAINT_WIDTH if curve.faint else WIDTH) * scale
     painter.polyline(x, y, width, _colour(painter, curve), inside, dash)
     if not curve.faint:

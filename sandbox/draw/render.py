@@ -30,7 +30,7 @@ from sandbox.draw.pane import (
     said_of,
 )
 from sandbox.draw.periodic import draw_cell
-from sandbox.draw.plot import Curve, draw_plot
+from sandbox.draw.plot import Curve, draw_plot, finite_part
 from sandbox.draw.status import draw_status
 from sandbox.draw.text import Type
 from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
@@ -245,7 +245,20 @@ def curve_of(frame: Frame) -> Curve:
     packing = frame.packing
     name = words.PACKINGS.get(packing, packing)
     colour, dash = packing_colour(packing), packing_dash(packing)
-    return Curve(frame.curve_stroke, frame.curve_force, colour, dash, name, events=frame.events)
+    ahead = None
+    if frame.ahead is not None:  # from the point that is shown now
+        stroke = np.append(frame.curve_stroke[-1:], frame.ahead.stroke)
+        force = np.append(frame.curve_force[-1:], frame.ahead.force)
+        ahead = finite_part(Curve(stroke, force, colour))
+    return Curve(
+        frame.curve_stroke,
+        frame.curve_force,
+        colour,
+        dash,
+        name,
+        events=frame.events,
+        ahead=ahead,
+    )
 
 
 def kept_curve(kept: Kept) -> Curve:

@@ -109,7 +109,8 @@ class Timeline(Silent):
         rect = pygame.Rect(left + pad, self.rect.top, right - left - 2 * pad, self.rect.height)
         now = frame.increment if self._going is None else self._going
         last = max(frame.last_kept, frame.increment)
-        return Bar(rect, min(frame.first_kept, frame.increment), last, now, frame.events)
+        events = frame.events + (frame.ahead.events if frame.ahead is not None else ())
+        return Bar(rect, min(frame.first_kept, frame.increment), last, now, events)
 
     @property
     def _going(self) -> int | None:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from sandbox.draw.painter import dashed
 from sandbox.draw.plot import Curve, finite_part, limits, thinned
 from sandbox.draw.render import Renderer
+from sandbox.frame import Ahead, Frame
 from tests.draw.frames import curve, intruder_frame
 
 
@@ -70,6 +74,37 @@ def test_any_number_of_points_can_be_drawn(points: int) -> None:
 def test_a_curve_of_bad_numbers_can_be_drawn() -> None:
     bad = np.array([np.nan, np.inf, -np.inf, 1.0])
     Renderer((640, 400)).draw(intruder_frame(6, curve_stroke=bad, curve_force=bad[::-1].copy()))
+
+
+def test_what_lies_ahead_of_a_recalled_state_stays_in_sight_and_recedes() -> None:
+    renderer = Renderer((640, 400))
+    whole = intruder_frame(6, points=200)
+    assert whole.curve_stroke.shape == (200,)
+
+    def strip(frame: Frame) -> NDArray[np.int64]:
+        left, top, width, height = renderer.layout.plot
+        return renderer.image(frame)[top : top + height, left : left + width].astype(np.int64)
+
+    early = replace(
+        whole,
+        curve_stroke=whole.curve_stroke[:80],
+        curve_force=whole.curve_force[:80],
+        ahead=Ahead(whole.curve_stroke[80:], whole.curve_force[80:], ()),
+    )
+    bad = replace(early, ahead=Ahead(np.array([np.nan, 1.0]), np.array([1.0, np.inf]), ()))
+    renderer.draw(bad)
+    drawn, before, alone = strip(early), strip(whole), strip(replace(early, ahead=None))
+    # Axes and what is past look as with the whole curve; what is ahead is drawn, and fainter.
+    third = slice(60, drawn.shape[1] // 3)
+    assert np.array_equal(drawn[40:, third], before[40:, third])
+    assert not np.array_equal(alone[40:, third], before[40:, third])
+    last = slice(2 * drawn.shape[1] // 3, drawn.shape[1] - 40)
+    background = drawn[45, 65]
+    faint, strong = (
+        np.abs(image[40:-40, last] - background).sum(axis=2).max(axis=0).mean()
+        for image in (drawn, before)
+    )
+    assert 0.0 < faint < strong
 
 
 def test_dashes_have_the_asked_length() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from sandbox.commands import Change, Grab, Move, Protocol, Recall, Reset, Undo
@@ -41,14 +42,25 @@ def test_events_go_and_come_back_with_time(clogged: Session) -> None:
     frame = clogged.frame()
     first = frame.events[0]
     do(clogged, Protocol(False), Recall(first.increment - 1))
-    assert clogged.frame().events == ()
+    early = clogged.frame()
+    assert early.events == ()
+    assert early.ahead is not None
+    assert early.ahead.events == frame.events
     do(clogged, Recall(first.increment))
     now = clogged.frame()
     assert now.events == (first,)
+    assert now.ahead is not None
+    assert now.ahead.events == frame.events[1:]
+    for there, later, whole in (
+        (now.curve_stroke, now.ahead.stroke, frame.curve_stroke),
+        (now.curve_force, now.ahead.force, frame.curve_force),
+    ):
+        assert np.array_equal(np.concatenate([there, later]), whole)
     assert now.highlight is not None
     assert now.highlight.any()
     do(clogged, Undo())
     assert clogged.frame().events == frame.events
+    assert clogged.frame().ahead is None
     do(clogged, Reset())
     assert clogged.frame().events == ()
 
