@@ -1,10 +1,9 @@
-"""The one decorator for compiled kernels: flags, cache folder, aliasing promise.
+"""The one decorator for compiled kernels: flags, aliasing promise, and that they are kept on the disk (``kernel_cache``).
 
-Three decisions live here and nowhere else:
+Two decisions live here and nowhere else:
 
 - ``fastmath`` is cut down to the flags that keep ``nan`` and ``inf`` meaningful. Full fast math lets the compiler assume that
   neither occurs, and then ``isnan(nan)`` is False: a blown-up packing would look healthy.
-- Numba's disk cache does not notice an edited callee in another file, so the cache folder carries a hash of every kernel source.
 - ``kernel(noalias=True)`` promises that no two array arguments overlap, which is what lets LLVM vectorise a loop that gathers and
   stores. Numba has the flag but no option for it; it is set by a custom compiler pipeline. Where a future Numba no longer takes
   that, the kernel is compiled without the promise: the same numbers, about half as fast.
@@ -12,30 +11,14 @@ Three decisions live here and nowhere else:
 
 from __future__ import annotations
 
-import hashlib
-import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numba
-from platformdirs import user_cache_path
+
+from core.kernel_cache import kept
 
 FAST_MATH = {"reassoc", "contract", "arcp", "nsz"}
-
-
-def source_hash() -> str:
-    """Hash of all kernel sources and of the compiler's version; changes when any of them does."""
-    digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(Path(__file__).parent.glob("*.py")):
-        digest.update(path.name.encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-if "NUMBA_CACHE_DIR" not in os.environ:
-    _config: Any = numba.config
-    _config.CACHE_DIR = str(user_cache_path("auxetic-sandbox") / f"kernels-{source_hash()}")
 
 
 def _noalias_pipeline() -> type | None:
@@ -83,6 +66,7 @@ def kernel(
         if noalias and NOALIAS_PIPELINE is not None:
             flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)
-        return numba.njit(**flags)(f)
+        with kept(f.__code__.co_filename):
+            return numba.njit(**flags)(f)
 
     return decorate if function is None else decorate(function)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core import contacts, fire, neighbors, observables, rigid_contacts
+from core import contacts, fire, kernel_cache, neighbors, observables, rigid_contacts
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation
@@ -81,3 +81,4 @@ def compile_kernels(
         done += share
         if progress is not None:
             progress(min(done, 1.0))
+    kernel_cache.prune()

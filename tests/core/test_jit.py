@@ -51,24 +51,6 @@ def test_cached_kernels_give_the_same_bits(tmp_path: Path) -> None:
     assert second < first
 
 
-def test_other_sources_get_another_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The name of the cache folder follows every source file beside it, and the compiler's version."""
-    (tmp_path / "jit.py").write_text("")
-    (tmp_path / "kernels.py").write_text("a = 1")
-    monkeypatch.setattr(jit, "__file__", str(tmp_path / "jit.py"))
-    hashes = {jit.source_hash()}
-    assert jit.source_hash() in hashes
-    (tmp_path / "kernels.py").write_text("a = 2")
-    hashes.add(jit.source_hash())
-    (tmp_path / "kernels.py").rename(tmp_path / "kernel.py")
-    hashes.add(jit.source_hash())
-    (tmp_path / "more.py").write_text("")
-    hashes.add(jit.source_hash())
-    monkeypatch.setattr("numba.__version__", "0.0")
-    hashes.add(jit.source_hash())
-    assert len(hashes) == 5
-
-
 @jit.kernel(cache=False)
 def blown_up(values):  # type: ignore[no-untyped-def]
     """What the minimiser asks of its sums."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.draw import raster
+from sandbox.draw.raster import made_grains
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.float64]  # (height, width, 3), 0 to 255
@@ -150,15 +150,18 @@ def made_share(
         away = np.full(px.shape, np.inf)
         for place in outline.T:
             away = np.minimum(away, np.hypot(offset[0] - place[0], offset[1] - place[1]))
-        covered &= away < raster.WALL * rest
+        covered &= away < made_grains.WALL * rest
     else:
         cosine, sine = np.cos(turn), np.sin(turn)
         u, v = np.array([[cosine, -sine], [sine, cosine]]) @ disc
-        notch = raster.NOTCH_CLOSED + (raster.NOTCH_OPEN - raster.NOTCH_CLOSED) * openness
-        apex, mouth = notch - raster.HINGE, raster.MOUTH * openness
-        a = np.abs(u) / raster.WING_U
-        below = v < raster.TIP + (raster.WING_V - raster.TIP) * a
-        above = v > notch + (raster.WING_V - notch) * a
+        notch = (
+            made_grains.NOTCH_CLOSED
+            + (made_grains.NOTCH_OPEN - made_grains.NOTCH_CLOSED) * openness
+        )
+        apex, mouth = notch - made_grains.HINGE, made_grains.MOUTH * openness
+        a = np.abs(u) / made_grains.WING_U
+        below = v < made_grains.TIP + (made_grains.WING_V - made_grains.TIP) * a
+        above = v > notch + (made_grains.WING_V - notch) * a
         wedge = (v < apex) & (np.abs(u) < mouth * (apex - v) / (apex + 1.0))
         covered &= ~(below & above) & ~wedge
     counted = covered.reshape(height, fine, width, fine).mean(axis=(1, 3))

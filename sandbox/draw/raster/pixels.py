@@ -1,0 +1,70 @@
+"""What every shape is made of: a canvas, colours that are mixed, pixels and spans of pixels."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.jit import kernel
+
+Pixels = NDArray[np.uint32]
+Colours = NDArray[np.uint32]
+Floats = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Clip = tuple[int, int, int, int]
+ToScreen = tuple[float, float, float]
+Canvas = tuple[Pixels, Clip, ToScreen]
+Grains = tuple[Floats, Floats, Floats, Floats, Floats]  # x, y, p, q1, q2: (N,) [R]
+
+
+@kernel
+def first_pixel(place: float, low: int, high: int) -> int:
+    """Index of the first pixel whose centre is at or after a finite place, within [low, high]."""
+    return int(min(max(math.ceil(place - 0.5), float(low)), float(high)))
+
+
+@kernel
+def sane(size: float) -> bool:
+    """Is a sum of magnitudes a number that can be drawn with?
+
+    Not isfinite: that is compiled to v - v == 0, which the flags that let the compiler reorder
+    sums make true for any sum, nan or not. A comparison stays what it is.
+    """
+    return size < 1e12
+
+
+@kernel
+def mix(under: int, over: int, share: int) -> int:
+    """``share`` of 256 parts of colour ``over`` on colour ``under``."""
+    rest = 256 - share
+    red_blue = ((under & 0xFF00FF) * rest + (over & 0xFF00FF) * share + 0x800080) >> 8
+    green = ((under & 0x00FF00) * rest + (over & 0x00FF00) * share + 0x008000) >> 8
+    return (red_blue & 0xFF00FF) | (green & 0x00FF00)
+
+
+@kernel
+def coverage(distance: float) -> float:
+    return min(max(0.5 - distance, 0.0), 1.0)
+
+
+@kernel
+def put(pixels: Pixels, row: int, column: int, colour: int, share: float) -> None:
+    """Blend ``share`` in 0..1 of a colour into one pixel."""
+    parts = int(share * 256.0 + 0.5)
+    if parts >= 256:
+        pixels[row, column] = colour
+    elif parts > 0:
+        pixels[row, column] = mix(np.int64(pixels[row, column]), colour, parts)
+
+
+@kernel
+def span(pixels: Pixels, row: int, first: int, last: int, colour: int, alpha: float) -> None:
+    """Fill ``first <= column < last`` of a row."""
+    if alpha >= 1.0:
+        for column in range(first, last):
+            pixels[row, column] = colour
+    else:
+        for column in range(first, last):
+            put(pixels, row, column, colour, alpha)

@@ -1,0 +1,161 @@
+"""The folders of compiled kernels: one for each state of their sources, and none for ever."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from core import kernel_cache
+
+REPOSITORY = Path(__file__).parents[2]
+MONTHS = 100 * 86_400.0  # [s]
+
+
+def test_other_sources_get_another_hash(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The hash follows every source file of every folder, their names, and the compiler's version."""
+    core, other = tmp_path / "core", tmp_path / "other"
+    for folder in (core, other):
+        folder.mkdir()
+        (folder / "kernels.py").write_text("a = 1")
+
+    def both() -> str:
+        return kernel_cache.source_hash(core, other)
+
+    hashes = {both(), kernel_cache.source_hash(core)}
+    assert both() in hashes
+    (core / "kernels.py").write_text("a = 2")
+    hashes.add(both())
+    (other / "kernels.py").write_text("a = 3")
+    hashes.add(both())
+    (other / "kernels.py").rename(other / "kernel.py")
+    hashes.add(both())
+    (other / "more.py").write_text("")
+    hashes.add(both())
+    monkeypatch.setattr("numba.__version__", "0.0")
+    hashes.add(both())
+    assert len(hashes) == 7
+
+
+def test_each_package_has_a_place_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels of core go by the sources of core alone, those of another package by its own too."""
+    core, raster = kernel_cache.CORE, REPOSITORY / "sandbox" / "draw" / "raster"
+    assert kernel_cache.place(core) != kernel_cache.place(raster)
+    asked: list[tuple[Path, ...]] = []
+
+    def record(*folders: Path) -> str:
+        asked.append(folders)
+        return "0"
+
+    monkeypatch.setattr(kernel_cache, "source_hash", record)
+    for folder in (core, raster):
+        kernel_cache.place.__wrapped__(folder)
+    assert asked == [(core,), (core, raster)]
+
+
+def test_kernels_are_kept_where_they_belong(tmp_path: Path) -> None:
+    """A fresh process: Numba's folder is another for core than for drawing, and is put back afterwards."""
+    program = (
+        "import numba\n"
+        "before = numba.config.CACHE_DIR\n"
+        "from core.sweeps import kick\n"
+        "from sandbox.draw.raster import draw_ring\n"
+        "assert numba.config.CACHE_DIR == before\n"
+        "print(kick._cache.cache_path, draw_ring._cache.cache_path, sep=chr(10))\n"
+    )
+
+    def places(**variables: str) -> list[str]:
+        environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            cwd=REPOSITORY,
+            env={**environment, **variables},
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=300,
+        )
+        return done.stdout.split()
+
+    core, raster = places()
+    assert str(kernel_cache.place(kernel_cache.CORE)) in core
+    assert str(kernel_cache.place(REPOSITORY / "sandbox" / "draw" / "raster")) in raster
+    assert all(str(tmp_path) in path for path in places(NUMBA_CACHE_DIR=str(tmp_path)))
+
+
+def folder(caches: Path, name: str, age: float) -> Path:
+    """A folder with a kernel in it, used ``age`` [s] ago."""
+    made = caches / name / "core"
+    made.mkdir(parents=True)
+    (made / "kernel.nbc").write_bytes(b"code")
+    used = time.time() - age
+    os.utime(made.parent, (used, used))
+    return made.parent
+
+
+def test_old_folders_go_and_others_stay(tmp_path: Path) -> None:
+    old = folder(tmp_path, "kernels-1", MONTHS)
+    half_removed = folder(tmp_path, "kernels-2.4711", MONTHS)  # by a process that was stopped
+    fresh = folder(tmp_path, "kernels-3", 86_400.0)
+    foreign = folder(tmp_path, "scenes", MONTHS)
+    kernel_cache.prune(tmp_path)
+    assert not old.exists()
+    assert not half_removed.exists()
+    assert (fresh / "core" / "kernel.nbc").exists()
+    assert (foreign / "core" / "kernel.nbc").exists()
+    assert len(list(tmp_path.iterdir())) == 2
+    kernel_cache.prune(tmp_path / "nowhere")
+
+
+def test_use_keeps_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernel_cache, "user_cache_path", lambda name: tmp_path)
+    name = kernel_cache.PREFIX + kernel_cache.source_hash(kernel_cache.CORE)
+    old = folder(tmp_path, name, MONTHS)
+    assert kernel_cache.place.__wrapped__(kernel_cache.CORE) == old
+    kernel_cache.prune()
+    assert old.exists()
+
+
+def test_two_processes_prune_at_once(tmp_path: Path) -> None:
+    """None of them fails, and nothing old is left."""
+    for k in range(60):
+        folder(tmp_path, f"kernels-{k}", MONTHS if k % 3 else 0.0)
+    program = "import sys, pathlib; from core.kernel_cache import prune; sys.stdin.readline(); prune(pathlib.Path(sys.argv[1]))"
+    both = [
+        subprocess.Popen(
+            [sys.executable, "-c", program, str(tmp_path)],
+            cwd=REPOSITORY,
+            stdin=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(2)
+    ]
+    for process in both:
+        assert process.stdin is not None
+        process.stdin.write("now\n")
+        process.stdin.flush()
+    for process in both:
+        process.communicate(timeout=120)
+    assert [process.returncode for process in both] == [0, 0]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
+        f"kernels-{k}" for k in range(0, 60, 3)
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need a privilege there")
+def test_what_cannot_be_removed_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = folder(tmp_path, "kernels-1", MONTHS)
+    link = tmp_path / "kernels-2"
+    link.symlink_to(old)
+
+    def refuse(self: Path, target: Path) -> Path:
+        raise PermissionError(13, "no", str(target))
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    kernel_cache.prune(tmp_path)
+    assert old.exists()
+    assert link.is_symlink()
