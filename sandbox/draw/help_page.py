@@ -15,6 +15,7 @@ Group = tuple[str, list[tuple[str, str]]]
 
 DESIGNED = (560, 420)  # the smallest window [px] that the page fits at scale 1, scrolled
 MOST_COLUMNS = 3
+LARGER = (1.3, 1.15, 1.0)  # letters of the page over those of the window, where there is room
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +92,14 @@ def _group_height(type_: Type, rows: list[tuple[str, str]]) -> int:
 def draw_help(painter: Painter, scroll: int = 0) -> HelpLayout:
     """All keys on one page, scrolled down by so many pixels at most; returns where everything is."""
     size = painter.surface.get_size()
-    painter = page_painter(painter, DESIGNED)
-    theme, type_, scale = painter.theme, painter.type, painter.scale
     groups = words.help_groups()
-    places = help_layout(size, type_, groups)
+    for larger in LARGER:  # rather smaller letters than a scroll bar, but not below the window's own
+        own = page_painter(painter, DESIGNED, larger * painter.scale)
+        places = help_layout(size, own.type, groups)
+        if not places.most_scroll:
+            break
+    painter = own
+    theme, type_, scale = painter.theme, painter.type, painter.scale
     scroll = min(scroll, places.most_scroll)
     veil(painter)
     painter.box(

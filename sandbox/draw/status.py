@@ -156,7 +156,7 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
         packing = words.SIDE_BY_SIDE.format(count=len(frames))
     increment = max(frame.increment for frame in frames)
     items = [
-        _Item(words.title(frame.scene, frame.scene.replace("_", " ")), 2),
+        _Item(words.title(frame.scene) or frame.scene.replace("_", " "), 2),
         _Item(packing, 4),
         _Item(words.SEED.format(seed=frame.seed), 1),
         _Item(

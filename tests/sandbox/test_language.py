@@ -13,8 +13,10 @@ import pytest
 
 from core.errors import InputError
 from sandbox import language
+from sandbox.commands import Protocol
 from sandbox.draw import words
 from sandbox.draw.numbers import number, percent
+from sandbox.session import Session
 from scenes import registry
 from scenes.text import Text, message
 
@@ -218,3 +220,22 @@ def test_unknown_language_is_a_plain_mistake() -> None:
     with pytest.raises(InputError, match="choose en, de"):
         language.use("tlh")
     assert language.after("de") == "en"
+
+
+@pytest.mark.parametrize("name", registry.names())
+def test_what_a_running_scene_says_is_translated(name: str) -> None:
+    """Labels, notices and events of the first increments."""
+    settings: dict[str, object] = {"friction": 0.0} if name == "hopper" else {}
+    session = Session(name, "mixed", 1, settings)
+    session.build()
+    session.submit(Protocol(True))
+    for _ in range(12):
+        while not session.advance(2000) and not session.idle:
+            pass
+    frame = session.frame()
+    said = [frame.curve_label, frame.stroke_label, *frame.notices]
+    said += [handle.label for handle in frame.handles] + [event.text for event in frame.events]
+    language.use("de")
+    untranslated = [text for text in said if words.say(text) == text]
+    assert untranslated == []
+    assert words.title(frame.scene, frame.title) != frame.title
