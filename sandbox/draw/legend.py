@@ -179,7 +179,7 @@ def _bar(
         share = (np.arange(pixels) + 0.5) / pixels
         places = round(x) + np.arange(pixels) + 0.5
         half = 0.5 * BAR_HEIGHT * scale * (np.sqrt(share) if wedge else np.ones(pixels))
-        raster.draw_lines(
+        raster.draw_few_lines(
             painter.canvas(),
             (places, -y - half, places, -y + half),
             np.full(pixels, 0.5),

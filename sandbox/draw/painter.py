@@ -151,7 +151,7 @@ class Painter:
         """Straight lines (x0, y0, x1, y1) of one look."""
         x0, y0, x1, y1 = (floats(part) for part in ends)
         count = x0.shape[0]
-        raster.draw_lines(
+        raster.draw_few_lines(
             self.canvas(clip),
             (x0, -y0, x1, -y1),
             np.full(count, 0.5 * width),

@@ -22,6 +22,7 @@ def compile_kernels() -> None:
     colours = (colour, colour)
     raster.draw_made_grains(canvas, grains, one, 0.0 * one, one, marked, colours, 1.0, 1.0)
     raster.draw_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one)
+    raster.draw_few_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one)
     raster.draw_hull(canvas, np.zeros((1, 2)), 1.0, 1, 1, 0.0, 1.0)
     raster.draw_ring(canvas, 4.0, -4.0, 2.0, 1.0, 1, 1.0)
 

@@ -8,6 +8,7 @@ later first goes through the turns that it has missed.
 from __future__ import annotations
 
 import math
+import os
 import threading
 import time
 from collections import deque
@@ -25,6 +26,13 @@ AT_ONCE = (Reset, Change, Recall, Undo, Redo, *get_args(Edit))
 def begins_anew(command: Command) -> bool:
     """Does what came before matter no more? Without knowing the scene: after any reset or change."""
     return isinstance(command, (Reset, Change))
+
+
+def cores() -> int:
+    """How many this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 class Member:
@@ -53,6 +61,7 @@ class Conductor:
         paused: bool = False,
         begins_anew: Callable[[Command], bool] = begins_anew,
     ) -> None:
+        self.core = threading.Semaphore(max(cores() - 1, 1))  # one is left to the window
         self._begins_anew = begins_anew
         self._changed = threading.Condition()
         self._mail: list[Command] = []

@@ -87,8 +87,8 @@ def run(
 ) -> Outcome:
     """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
-    The sessions, several of them side by side, are built already. A frame is written after each increment, the table at the
-    end; in a film of every n-th increment, after each n-th. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th,
+    the table at the end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
     """
     from tqdm import tqdm
 

@@ -201,14 +201,19 @@ class SolverThread:
         self._cancel = False
         for command in turn:
             self._session.submit(command)
-        finished = self._session.advance(SLICE)
+        finished = self._advance()
         while self._session.busy and not self._member.stopping:
             if time.perf_counter() - self._pictured >= PICTURE:
                 self._publish()
-            finished = self._session.advance(SLICE)
+            finished = self._advance()
         if not self._member.missed or time.perf_counter() - self._pictured >= PICTURE:
             self._publish()
         return finished
+
+    def _advance(self) -> bool:
+        """A slice of work, when a core is free for it."""
+        with self._conductor.core:
+            return self._session.advance(SLICE)
 
     def _finish(self) -> None:
         """Bring the increment at work to its end: a log ends between increments."""

@@ -17,7 +17,7 @@ back from a busy solver can take milliseconds.
 
 from sandbox.draw.raster.ellipses import draw_ellipses
 from sandbox.draw.raster.hulls import draw_hull
-from sandbox.draw.raster.lines import draw_lines, draw_ring
+from sandbox.draw.raster.lines import draw_few_lines, draw_lines, draw_ring
 from sandbox.draw.raster.made_grains import WALL, draw_made_grains
 from sandbox.draw.raster.marks import draw_bow_ties
 from sandbox.draw.raster.pixels import (
@@ -43,6 +43,7 @@ __all__ = [
     "ToScreen",
     "draw_bow_ties",
     "draw_ellipses",
+    "draw_few_lines",
     "draw_hull",
     "draw_lines",
     "draw_made_grains",
