@@ -24,7 +24,8 @@ def test_a_scrub_holds_and_play_goes_on_from_there() -> None:
 
     solver.start()
     solver.submit(Protocol(True))
-    wait_until(lambda: solver.snapshot.phase == "running" and frame().increment >= 12)
+    # A first start compiles.
+    wait_until(lambda: solver.snapshot.phase == "running" and frame().increment >= 12, 400.0)
     for increment in (9, 3, 6):
         solver.submit(Recall(increment))
         wait_until(partial(stands_at, increment))
