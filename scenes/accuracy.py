@@ -1,11 +1,16 @@
 """How accurate each scene is at its defaults, as a full run of ``python -m sandbox study accuracy`` found it.
 
-The numbers stand in assets/studies/accuracy/results.json too; a test holds them against each other.
+accuracy.toml beside this file is the accuracy.toml of assets/studies/accuracy, which that command writes.
 """
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+TABLE = Path(__file__).with_name("accuracy.toml")
 
 
 @dataclass(frozen=True)
@@ -19,11 +24,20 @@ class Accuracy:
     error_factor: float
 
 
-ACCURACY: dict[str, Accuracy] = {}
-# For scenes that the study has not seen: larger than that of any scene it has.
+# For scenes that the study has not seen: about that of the worst it has.
 UNKNOWN = Accuracy("", 20.0)
+
+
+@cache
+def accuracies() -> dict[str, Accuracy]:
+    """All scenes that the study has seen, by name."""
+    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
+    return {
+        name: Accuracy(str(row["statement"]), float(row["error_factor"]))
+        for name, row in table.items()
+    }
 
 
 def accuracy_of(scene: str) -> Accuracy:
     """What is known about the scene of that name."""
-    return ACCURACY.get(scene, UNKNOWN)
+    return accuracies().get(scene, UNKNOWN)
