@@ -176,8 +176,9 @@ class Places:
         return None
 
     def named(self, name: str) -> Place | None:
-        """Where a control stands."""
-        return next((place for place in self.all if place.control.name == name), None)
+        """Where a control stands; what can only be read has no name."""
+        found = (place for place in self.all if place.control.name == name)
+        return next(found, None) if name else None
 
     def stops(self) -> tuple[str, ...]:
         """Names of what the keyboard can go to."""

@@ -182,6 +182,13 @@ def test_any_control_can_be_scrolled_into_view(name: str, scroll: int) -> None:
     assert place.rect.bottom - moved <= view
 
 
+def test_what_can_only_be_read_is_not_found_by_its_empty_name() -> None:
+    places = arranged(CONTROLS, Type(1.0), 316)
+    assert places.named("") is None
+    fact = next(place for place in places.all if isinstance(place.control, Fact))
+    assert places.at(*fact.rect.center) is None
+
+
 def test_choice_shows_all_where_there_is_room_and_one_where_not() -> None:
     type_ = Type(1.0)
     places = arranged(CONTROLS[:2], type_, 316).all
