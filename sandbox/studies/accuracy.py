@@ -19,7 +19,7 @@ from sandbox.interrupts import deferred
 from sandbox.studies import accuracy_job
 from sandbox.studies.accuracy_job import Job
 from sandbox.studies.accuracy_protocols import APART, PROTOCOLS, protocol
-from sandbox.studies.accuracy_report import as_markdown, statement
+from sandbox.studies.accuracy_report import as_markdown, as_table, statement
 from sandbox.studies.accuracy_summary import summarise
 from sandbox.studies.paper import machine
 from sandbox.studies.pool import Pool, stopping
@@ -173,6 +173,7 @@ def _write(folder: Path, summaries: Mapping[str, Any], about: Mapping[str, Any])
     text = json.dumps(finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_text(folder / "results.json", text)
     write_text(folder / "accuracy.md", as_markdown(summaries, about, APART))
+    write_text(folder / "accuracy.toml", as_table(summaries))
 
 
 def _rounded(value: Any) -> Any:

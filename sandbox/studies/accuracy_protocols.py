@@ -25,7 +25,7 @@ class Protocol:
 
 
 PROTOCOLS: dict[str, Protocol] = {
-    "single_grain": Protocol(lead=10, length=8, starts=2),
+    "single_grain": Protocol(lead=10, length=8, starts=1),
     "two_ellipses": Protocol(lead=0, length=72, starts=1),
     "grain_row": Protocol(lead=10, length=8, starts=3),
     "biaxial_press": Protocol(lead=32, length=8, starts=3),

@@ -58,6 +58,23 @@ def statement(summary: Summary) -> str:
     return f"force within {percent(default['force'])} in {milliseconds(default['increment'])} ms an increment"
 
 
+def as_table(summaries: Mapping[str, Summary]) -> str:
+    """What ``scenes.accuracy`` reads, as TOML: statement and factor of the error estimate of each scene."""
+    lines = [
+        "# Written by `python -m sandbox study accuracy`; scenes/accuracy.toml is that of a full run."
+    ]
+    for name, summary in summaries.items():
+        found = summary.get("estimate", {"factor": 0.0})["factor"]
+        amount = f"{found:.3g}" if math.isfinite(found) else "nan"
+        lines += [
+            "",
+            f"[{name}]",
+            f'statement = "{statement(summary)}"',
+            f"error_factor = {amount}",
+        ]
+    return "\n".join(lines) + "\n"
+
+
 def as_markdown(summaries: Mapping[str, Summary], about: Mapping[str, Any], apart: float) -> str:
     """The whole report."""
     relaxing = {name: s for name, s in summaries.items() if "contact" not in s}

@@ -18,11 +18,13 @@ from sandbox.studies.accuracy_math import (
     rms,
     slope,
 )
+from sandbox.studies.accuracy_protocols import APART
 
 Job = Mapping[str, Any]
 
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
 SHARE = 0.95  # of the increments in which the estimate is to be above the error
+TIGHT = 1e-6  # a tolerance up to which walks say where paths part
 FRAME = 1.0 / 60.0  # [s]
 
 
@@ -84,6 +86,7 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     first = jobs[0]
     if "contact" in first:
         return _contact(first)
+    jobs = [until_bifurcation(job) for job in jobs]
     length = float(first["length"])
     grid = dots([job["walks"] for job in jobs], length)
     peers = {name: dots([job["peers"][name] for job in jobs], length) for name in first["peers"]}
@@ -116,6 +119,32 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         found = dots([job["friction"] for job in jobs], length)
         summary["friction"] = [asdict(dot) for dot in found]
     return summary
+
+
+def until_bifurcation(job: Job) -> Job:
+    """The job without errors beyond the first place at which a tight walk of the sweeps has left the reference.
+
+    Friction and drag make errors in proportion to the increment, which are none of that sort.
+    """
+    if "friction" in job:
+        return job
+    ends = [] if job["bifurcation"] is None else [job["bifurcation"]]
+    for walk in job["walks"]:
+        if walk["tolerance"] <= TIGHT:
+            ends += [place["place"] for place in walk["errors"] if place["position"] > APART][:1]
+    if not ends:
+        return job
+    end = min(ends)
+
+    def cut(walks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        return [
+            {**walk, "errors": [place for place in walk["errors"] if place["place"] < end]}
+            for walk in walks
+        ]
+
+    peers = {name: cut(walks) for name, walks in job["peers"].items()}
+    parts = {"walks": cut(job["walks"]), "budgets": cut(job["budgets"]), "peers": peers}
+    return {**job, **parts, "bifurcation": end}
 
 
 def default_dot(grid: Sequence[Dot], tolerance: float) -> Dot:

@@ -6,6 +6,7 @@ import json
 import math
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,8 @@ from sandbox.session import Session
 from sandbox.studies import accuracy
 from sandbox.studies.accuracy_job import Bench, Job, measure
 from sandbox.studies.accuracy_protocols import PROTOCOLS, QUICK, Protocol
-from sandbox.studies.accuracy_report import as_markdown, percent, statement
-from sandbox.studies.accuracy_summary import estimate, stiffness, summarise
+from sandbox.studies.accuracy_report import as_markdown, as_table, percent, statement
+from sandbox.studies.accuracy_summary import estimate, stiffness, summarise, until_bifurcation
 from sandbox.studies.accuracy_walk import Knobs, begin, walk
 from sandbox.studies.paper import machine
 from scenes import registry
@@ -104,6 +105,9 @@ def test_summary_and_report(row_job: dict[str, Any]) -> None:
     text = as_markdown({"grain_row": summary}, about, 0.01)
     assert "| `grain_row` | 7 |" in text
     assert "Quick run." in text
+    table = tomllib.loads(as_table({"grain_row": summary}))["grain_row"]
+    assert table["statement"] == statement(summary)
+    assert table["error_factor"] > 0.0
 
 
 def test_a_bifurcation_ends_the_errors() -> None:
@@ -114,6 +118,20 @@ def test_a_bifurcation_ends_the_errors() -> None:
     bench.bifurcation = 3.0
     assert list(bench._places(1.0)) == [1.0, 2.0]
     assert list(bench._places(0.5)) == [0.5, 1.0, 1.5, 2.0, 2.5]
+
+
+def test_a_tight_walk_that_leaves_the_reference_ends_the_errors_too(
+    row_job: dict[str, Any],
+) -> None:
+    assert until_bifurcation(row_job) is row_job
+    job = json.loads(json.dumps(row_job))
+    tight = next(walked for walked in job["walks"] if walked["tolerance"] <= 1e-6)
+    tight["errors"][1]["position"] = 0.5
+    cut = until_bifurcation(job)
+    end = tight["errors"][1]["place"]
+    assert cut["bifurcation"] == end
+    for walked in (*cut["walks"], *cut["budgets"], *cut["peers"]["paper's chart"]):
+        assert all(place["place"] < end for place in walked["errors"])
 
 
 def test_model_error_is_against_the_extrapolated_limit() -> None:
