@@ -15,6 +15,7 @@ from sandbox.studies import (
     bench_peers,
     bench_scaling,
     bench_startup,
+    bench_threads,
 )
 from sandbox.studies.bench_report import Report, Section
 
@@ -29,10 +30,11 @@ class Plan:
     drawing_seconds: float
     repeats: int
     cold: bool
+    threads_seconds: float  # 0: not looked at, since its kernels are compiled for nobody else
 
 
-FULL = Plan(12.0, 30.0, 150, 3.0, 3, cold=True)
-QUICK = Plan(2.0, 3.0, 15, 1.0, 1, cold=False)
+FULL = Plan(12.0, 30.0, 150, 3.0, 3, cold=True, threads_seconds=18.0)
+QUICK = Plan(2.0, 3.0, 15, 1.0, 1, cold=False, threads_seconds=0.0)
 
 
 def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
@@ -42,6 +44,8 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     yield lambda: bench_kernels.section(seconds=plan.kernel_seconds)
     yield lambda: bench_peers.section(peers=peers, repeats=plan.repeats)
     yield lambda: bench_scaling.section(quick=quick, seconds=plan.scaling_seconds)
+    if plan.threads_seconds > 0.0:
+        yield lambda: bench_threads.section(seconds=plan.threads_seconds)
     yield lambda: bench_frames.section(frames=plan.frames)
     yield lambda: bench_drawing.section(seconds=plan.drawing_seconds)
 

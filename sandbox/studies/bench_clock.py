@@ -39,7 +39,11 @@ class Times:
 
 
 def in_turn(
-    jobs: Mapping[str, Callable[[int], object]], *, seconds: float, run: float = 2e-3
+    jobs: Mapping[str, Callable[[int], object]],
+    *,
+    seconds: float,
+    run: float = 2e-3,
+    clock: Callable[[], float] = clock,
 ) -> dict[str, Times]:
     """Time ``jobs`` A, B, A, B, … for about ``seconds`` in all; what slows the machine down then slows all of them.
 

@@ -11,6 +11,7 @@ import pytest
 
 from core.errors import InputError
 from core.generate import Recipe, pack
+from core.threads import most_threads
 from sandbox.session import Session
 from sandbox.studies import (
     bench_clock,
@@ -20,6 +21,7 @@ from sandbox.studies import (
     bench_report,
     bench_scaling,
     bench_startup,
+    bench_threads,
     soft_discs,
 )
 from sandbox.studies.disc_forces import DiscForces
@@ -200,6 +202,31 @@ def test_tiles_make_the_numbers_they_stand_for() -> None:
 
 def test_bytes_of_nested_arrays() -> None:
     assert bench_scaling._bytes([np.zeros(3), (np.zeros(2), (1.0, np.zeros(1, np.uint32)))]) == 44
+
+
+# Threads.
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(most_threads() < 2, reason="this machine has one core")
+def test_two_threads_are_timed_beside_one() -> None:
+    section = bench_threads.section(seconds=0.3, sizes=(2_000,))
+    (one,) = section.data["sizes"]
+    assert one["same_bits"]
+    assert one["ratio"] == pytest.approx(one["several_us"]["min"] / one["one_us"]["min"])
+    (row,) = section.rows
+    assert "N = 2000" in row.what
+    assert (row.target, row.met) == ("the same bits", True)
+
+
+def test_a_machine_with_one_core_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench_threads, "most_threads", lambda: 1)
+    section = bench_threads.section(seconds=1.0)
+    assert [row.measured for row in section.rows] == ["this machine has one core"]
+
+
+def test_other_bits_are_a_miss() -> None:
+    assert bench_threads._same(bits=False)[1] is False
 
 
 # Frames.
