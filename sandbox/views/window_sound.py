@@ -43,7 +43,9 @@ class Sound:
         if not self.on and not self._sounds:
             try:
                 pygame.mixer.init(RATE, -16, 1, 512)
-                self._sounds = {kind: pygame.mixer.Sound(buffer=tick(kind).tobytes()) for kind in TICKS}
+                self._sounds = {
+                    kind: pygame.mixer.Sound(buffer=tick(kind).tobytes()) for kind in TICKS
+                }
             except (pygame.error, NotImplementedError):
                 self._sounds = {}
                 return False
