@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 
 from sandbox.draw.painter import Painter
+from sandbox.draw.signs import SIGNS, draw_sign
 from sandbox.draw.text import BODY, SMALL
 from sandbox.draw.theme import HAND, Theme, mix
 from sandbox.draw.widgets import (
@@ -323,40 +324,3 @@ def _draw_note(painter: Painter, note: Note, rect: pygame.Rect) -> None:
     for index, text in enumerate(type_.wrapped(note.text, SMALL, rect.width)):
         y = rect.top + index * line + line // 2
         painter.text(text, rect.left, y, size=SMALL, colour=painter.theme.soft_text)
-
-
-# Signs are drawn, not written: no font has all of them.
-SIGNS = {
-    "−": (((-1.0, 0.0), (1.0, 0.0)),),
-    "+": (((-1.0, 0.0), (1.0, 0.0)), ((0.0, -1.0), (0.0, 1.0))),
-    "‹": (((0.5, -1.0), (-0.5, 0.0), (0.5, 1.0)),),
-    "›": (((-0.5, -1.0), (0.5, 0.0), (-0.5, 1.0)),),
-    "⌄": (((-1.0, -0.5), (0.0, 0.5), (1.0, -0.5)),),
-    "×": (((-0.8, -0.8), (0.8, 0.8)), ((-0.8, 0.8), (0.8, -0.8))),
-    "▶": (((-0.6, -0.9), (0.9, 0.0), (-0.6, 0.9), (-0.6, -0.9)),),
-    "⏸": (((-0.5, -0.9), (-0.5, 0.9)), ((0.5, -0.9), (0.5, 0.9))),
-    "⏭": (((-0.8, -0.9), (0.5, 0.0), (-0.8, 0.9), (-0.8, -0.9)), ((0.8, -0.9), (0.8, 0.9))),
-    "●": (),
-    "◉": (),
-    "○": (),
-}
-
-
-def draw_sign(painter: Painter, sign: str, rect: pygame.Rect, colour: int | None = None) -> None:
-    """One of the signs in the middle of a rectangle."""
-    scale = painter.scale
-    size = min(6.5 * scale, 0.4 * min(rect.width, rect.height))
-    colour = painter.theme.text if colour is None else colour
-    if not SIGNS[sign]:  # round
-        if sign != "●":
-            painter.ring(*rect.center, size, 2.4 * scale, colour)
-        if sign != "○":
-            painter.disc(*rect.center, size if sign == "●" else 0.45 * size, colour)
-        return
-    for strokes in SIGNS[sign]:
-        points = np.array(strokes) * size + np.array(rect.center, dtype=np.float64)
-        if len(strokes) == 4:  # an area
-            corners = points[:3] * np.array([1.0, -1.0])
-            painter.hull(corners[::-1].copy(), 0.6 * scale, colour)
-        else:
-            painter.polyline(points[:, 0], points[:, 1], 2.4 * scale, colour)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import pygame
 
 from sandbox.draw.painter import Painter
+from sandbox.draw.signs import draw_sign
 from sandbox.draw.text import SMALL, Type
 from sandbox.draw.theme import Theme, channels
 from sandbox.draw.widgets import PAD, Place, Places
-from sandbox.draw.widgets_look import Attention, draw_control, draw_sign
+from sandbox.draw.widgets_look import Attention, draw_control
 
 FOOT_LINES = 3  # of help
 
