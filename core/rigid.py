@@ -29,6 +29,7 @@ Role = Literal["wall", "piston", "intruder", "body"]
 SUBSTEPS = 4
 # [k · increment²]: a push that exceeds the hand's force by 1 k R moves the body back by 0.0075 R an increment.
 HELD_MASS = 50.0
+CLEAR = 1.0  # [R] what is further away is not touched in one increment
 SAME_POINT = 1e-9  # [R] what is closer than this is at the same place
 
 
@@ -58,6 +59,9 @@ class RigidBody:
     force_limit: float = 40.0
     drawn: bool = False
     home: Point = field(init=False)
+    _made: tuple[Point, float, Floats] | None = field(
+        init=False, repr=False, compare=False, default=None
+    )
 
     def __post_init__(self) -> None:
         self.home = self.position
@@ -92,7 +96,15 @@ class RigidBody:
         )
 
     def primitives(self) -> Floats:
-        """The body's shapes as rows for the kernels, (M, 8); see ``rigid_contacts``."""
+        """The body's shapes as rows for the kernels, (M, 8); see ``rigid_contacts``. Read only: they are made once a place."""
+        if self._made is not None and self._made[:2] == (self.position, self.angle):
+            return self._made[2]
+        rows = self._rows()
+        rows.flags.writeable = False
+        self._made = (self.position, self.angle, rows)
+        return rows
+
+    def _rows(self) -> Floats:
         rows: list[list[float]] = []
         for x, y, radius in self.discs:
             cx, cy = self.to_world([(x, y)])[0]
@@ -209,7 +221,7 @@ class RigidWorld:
             return (0.0, 0.0), "force limit"
         dx, dy = amount * float(axis[0]), amount * float(axis[1])
         there = (body.position[0] + dx, body.position[1] + dy)
-        walls = self.drawn
+        walls = near(self.drawn, body)
         if walls and depth(body, there, walls) > depth(body, body.position, walls):
             return (0.0, 0.0), "wall"
         body.position = there
@@ -233,7 +245,7 @@ class RigidWorld:
         held.velocity = (0.0, 0.0) if too_hard else (float(wanted[0]), float(wanted[1]))
         held.velocity_func = lambda b, _gravity, _damping, dt: _limit_speed(b, reaction, dt, step)
         space.add(held, *_shapes(body, held))
-        for other in self.bodies:
+        for other in (*(b for b in self.bodies if not b.drawn), *near(self.drawn, body)):
             if other is not body:
                 fixed = pymunk.Body(
                     body_type=pymunk.Body.KINEMATIC if other.movable else pymunk.Body.STATIC
@@ -256,6 +268,26 @@ class RigidWorld:
         if asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2:
             stopped = "force limit" if too_hard else "wall"
         return (float(moved[0]), float(moved[1])), stopped
+
+
+def near(walls: Sequence[RigidBody], body: RigidBody) -> list[RigidBody]:
+    """Those drawn walls that a body may come to touch in one increment."""
+    if not walls or not len(body.primitives()):
+        return []
+    low, high = _extent(body)
+    extents = [_extent(wall) for wall in walls]
+    return [
+        wall
+        for wall, (left, right) in zip(walls, extents, strict=True)
+        if np.all(left < high + CLEAR) and np.all(right > low - CLEAR)
+    ]
+
+
+def _extent(body: RigidBody) -> tuple[Floats, Floats]:
+    """The lower left and the upper right corner of the rectangle around a body, (2,) each [R]."""
+    rows = body.primitives()
+    ends, radius = rows[:, 1:3], rows[:, 7:8]
+    return (ends - radius).min(axis=0), (ends + radius).max(axis=0)
 
 
 def depth(body: RigidBody, position: Point, others: Sequence[RigidBody]) -> float:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from core import observables
 from core.errors import InputError
 from core.packing import Packing
-from core.rigid import Point, RigidBody, RigidWorld, depth, offset_path, polygon_area, wall
+from core.rigid import Point, RigidBody, RigidWorld, depth, near, offset_path, polygon_area, wall
 from core.rigid_contacts import DISC, EDGE, VERTEX
 
 SQUARE: list[Point] = [(0.0, 0.0), (14.0, 0.0), (14.0, 10.0), (0.0, 10.0)]
@@ -336,6 +336,30 @@ def test_a_piston_with_a_wall_drawn_through_it_can_only_leave() -> None:
     assert world.advance("piston", (0.0, 0.0), 0.1) == ((0.0, 0.0), "wall")
     moved, _ = world.advance("piston", (0.0, 9.0), 0.1)
     assert moved == pytest.approx((0.0, 0.1))
+
+
+def test_shapes_for_the_kernels_follow_the_body_and_are_made_once_a_place() -> None:
+    body = intruder(at=(3.0, 5.0))
+    first = body.primitives()
+    assert body.primitives() is first
+    body.position = (4.0, 5.0)
+    assert body.primitives()[0, 1] == 4.0
+    assert first[0, 1] == 3.0
+    body.angle = 0.5
+    assert body.primitives() is not first
+    with pytest.raises(ValueError, match="read-only"):
+        body.primitives()[0, 1] = 0.0
+    rows, _ = RigidWorld([body]).primitives()
+    rows[0, 1] = 0.0  # those are nobody's
+    assert body.primitives()[0, 1] == 4.0
+
+
+def test_only_walls_that_are_near_can_be_touched() -> None:
+    walls = [drawn(str(k), 3.0 * k, 7.0) for k in range(12)]
+    found = near(walls, piston())
+    assert [wall.name for wall in found] == ["0", "1", "2"]
+    assert near(walls, intruder(at=(3.0, 2.0))) == []
+    assert near([], piston()) == []
 
 
 @pytest.mark.parametrize("swapped", [False, True])
