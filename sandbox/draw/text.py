@@ -21,6 +21,7 @@ TITLE = 34
 
 _FILES = {False: "SandboxSans-Regular.otf", True: "SandboxSans-SemiBold.otf"}
 _CACHE_SIZE = 512
+FIRM = "\u00a0"  # a space at which no line breaks
 
 
 def font_path(bold: bool = False) -> Path:
@@ -92,10 +93,10 @@ class Type:
         return text[:kept].rstrip() + "…" if kept else ""
 
     def wrapped(self, text: str, size: float, width: float, bold: bool = False) -> list[str]:
-        """Lines no wider than the width, broken between words."""
+        """Lines no wider than the width, broken between words, but not within a unit."""
         lines: list[str] = []
         line = ""
-        for word in text.split():
+        for word in text.replace(" k R", f"{FIRM}k{FIRM}R").split(" "):
             longer = f"{line} {word}" if line else word
             if line and self.width(longer, size, bold) > width:
                 lines.append(line)
