@@ -54,6 +54,28 @@ def accuracy(options: argparse.Namespace) -> int:
     return FAILED if outcome.failures else OK
 
 
+def stability(options: argparse.Namespace) -> int:
+    """Carry out the hard cases."""
+    from collections import Counter
+
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies import stability as study
+    from sandbox.studies.paper import prepare_folder, require_matplotlib
+    from sandbox.studies.stability_case import FAILS
+
+    require_matplotlib()
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    if done.interrupted:
+        return stopped(len(done.outcomes))
+    verdicts = Counter(outcome.verdict for outcome in done.outcomes)
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
+    print(f"{len(done.outcomes)} cases: {counts}")
+    print(f"table, numbers and figures: {folder / 'stability.md'}, results.json, *.png")
+    return FAILED if verdicts[FAILS] else OK
+
+
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
     print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
@@ -67,5 +89,5 @@ def refuse_foreign_options(options: argparse.Namespace) -> None:
             raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
 
 
-STUDIES: dict[str, Study] = {"paper": paper, "accuracy": accuracy}
+STUDIES: dict[str, Study] = {"paper": paper, "accuracy": accuracy, "stability": stability}
 OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}

@@ -62,12 +62,12 @@ def require_matplotlib() -> None:
         )
 
 
-def prepare_folder(text: str) -> Path:
-    """The folder for the output, made if need be, with one for runs in it. Raises InputError if it cannot be written to."""
+def prepare_folder(text: str, inside: str = "runs") -> Path:
+    """The folder for the output, made if need be, with one ``inside`` it. Raises InputError if it cannot be written to."""
     folder = Path(text)
     try:
-        (folder / "runs").mkdir(parents=True, exist_ok=True)
-        trial = folder / "runs" / f".trial-{os.getpid()}"
+        (folder / inside).mkdir(parents=True, exist_ok=True)
+        trial = folder / inside / f".trial-{os.getpid()}"
         trial.write_bytes(b"")
         trial.unlink()
     except OSError as error:
