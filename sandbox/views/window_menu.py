@@ -110,7 +110,7 @@ class Menu:
         ]
         chips += [
             Chip(LANGUAGE, str(language.find("name"))),
-            Chip(THEME, words.DARK if theme == "dark" else words.LIGHT),
+            Chip(THEME, words.THEMES[theme]),
             Chip(KEYS, words.HELP_TITLE),
         ]
         return Contents(tuple(cards), tuple(chips), self.resume() if self.resume else "")
