@@ -18,9 +18,9 @@ from sandbox import __version__
 from sandbox.studies.accuracy_chart import paper_chart
 from sandbox.studies.accuracy_contact import contact_job
 from sandbox.studies.accuracy_exact import exact_increment
-from sandbox.studies.accuracy_math import first_beyond, rms
+from sandbox.studies.accuracy_math import rms
 from sandbox.studies.accuracy_peers import l_bfgs_b, newton
-from sandbox.studies.accuracy_protocols import APART, FULL, QUICK, Protocol, Sweeps, protocol
+from sandbox.studies.accuracy_protocols import FULL, QUICK, Protocol, Sweeps, protocol
 from sandbox.studies.accuracy_walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
 from scenes import registry
 
@@ -31,6 +31,7 @@ DATA_VERSION = 1  # raise it when a job measures something else
 TIGHT = 1e-8  # relative residual of the walks that say where paths part
 CHECKED = 1e-9  # relative residual asked of the Newton polish
 LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
+LONG = 0.25  # [s] a walk that takes so long is not timed again: several starts do that
 SLICE = 200  # force evaluations between two looks of a window
 PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, "paper's chart": paper_chart}
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
@@ -87,7 +88,6 @@ class Bench:
             "shape": 1.0,
             "energy": float(np.mean([look.energy for look in looks])),
         }
-        self.bifurcation = self._bifurcation()
 
     def walk(self, knobs: Knobs, length: float | None = None) -> Walk:
         """A walk of the protocol. Raises Stopped."""
@@ -107,7 +107,7 @@ class Bench:
             "step": setup.solver.step,
             "tolerance": setup.solver.tolerance,
             "scales": self.scales,
-            "bifurcation": self.bifurcation,
+            "tight": list(self._tight()),
             "reference": self._described(),
             "walks": [summary for summary, _ in grid],
             "estimate": self._estimates([path for _, path in grid if path.step == 1.0]),
@@ -143,11 +143,9 @@ class Bench:
         }
 
     def _places(self, step: float) -> Floats:
-        """Where a walk with that increment can be held against the reference, before any bifurcation."""
-        count = round(self.plan.length / step)
-        places: Floats = step * np.arange(1, count + 1, dtype=np.float64)
-        end = self.bifurcation
-        return places if end is None else places[places < end - 1e-9]
+        """Where a walk with that increment can be held against the reference."""
+        places: Floats = step * np.arange(1, round(self.plan.length / step) + 1, dtype=np.float64)
+        return places
 
     def _compared(self, path: Walk) -> list[dict[str, float]]:
         found = []
@@ -157,35 +155,25 @@ class Bench:
                 found.append({"place": float(place), **self.errors(look, exact)})
         return found
 
-    def _bifurcation(self) -> float | None:
-        """Where two tight walks part by more than ``APART``: of two tolerances, of two increments.
+    def _tight(self) -> Iterator[dict[str, Any]]:
+        """How far tight walks are from the reference at each place [R]: of another tolerance, of other increments.
 
         Friction and drag give the path a memory, and errors in proportion to the increment: there the coarser ones do not count.
         """
         sweeps = self.sweeps
-        tight = [
-            Knobs(tolerance=TIGHT, step=sweeps.reference_step),
-            Knobs(tolerance=TIGHT, step=2.0 * sweeps.reference_step),
-        ]
+        steps = [sweeps.reference_step, 2.0 * sweeps.reference_step]
         if self.start.friction is None and self.start.setup.drag == 0.0:
-            shares = (*sweeps.steps, 1.0)
-            tight += [Knobs(tolerance=TIGHT, step=share) for share in shares if share <= 1.0]
-        parted = []
-        for knobs in tight:
-            path = self.walk(knobs)
-            places = knobs.step * np.arange(1, len(path.looks) + 1)
-            apart = [
-                np.nan if exact is None else distances(look, exact)[0]
-                for look, exact in zip(path.looks, map(self.reference.at, places), strict=True)
-            ]
-            first = first_beyond(places.tolist(), apart, APART)
-            parted += [] if first is None else [first]
-        return min(parted) if parted else None
+            steps += [step for step in (*sweeps.steps, 1.0) if step <= 1.0]
+        for step in steps:
+            path = self.walk(Knobs(tolerance=TIGHT, step=step))
+            apart = [(error["place"], error["position"]) for error in self._compared(path)]
+            yield {"tolerance": TIGHT, "step": step, "apart": apart}
 
     def _timed(self, knobs: Knobs, timings: int | None = None) -> tuple[dict[str, Any], Walk]:
         """A walk several times over: its cost by the middle one, its errors."""
-        paths = [self.walk(knobs) for _ in range(timings or self.sweeps.timings)]
-        path = paths[0]
+        path = self.walk(knobs)
+        again = (timings or self.sweeps.timings) - 1 if path.seconds < LONG else 0
+        paths = [path, *(self.walk(knobs) for _ in range(again))]
         looks = path.looks
         summary = {
             "tolerance": knobs.tolerance,
@@ -219,8 +207,8 @@ class Bench:
             for step in (1.0, *self.sweeps.steps):
                 yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)[0]
 
-    def _estimates(self, paths: list[Walk]) -> list[tuple[float, float]]:
-        """(residual times mean contact force, error of the force) of every increment before the bifurcation [k R].
+    def _estimates(self, paths: list[Walk]) -> list[tuple[float, float, float]]:
+        """(place, residual times mean contact force, error of the force) of every increment [k R].
 
         The error is that against the tightest walk with the same increments: what the residual alone is to blame for.
         """
@@ -234,23 +222,20 @@ class Bench:
                 if look is None or exact is None or look.residual < LEAST_RESIDUAL:
                     continue
                 error = float(np.hypot(*(look.force - exact.force)))
-                found.append((look.residual * look.scale, error))
+                found.append((float(place), look.residual * look.scale, error))
         return found
 
     def _stiffness(self, stiffness: float) -> dict[str, Any]:
         """Force at every place with contacts of that stiffness; and what a walk costs at the scene's own tolerance."""
         tight = self.walk(Knobs(tolerance=TIGHT, contact_stiffness=stiffness))
         usual = Knobs(tolerance=self.start.setup.solver.tolerance, contact_stiffness=stiffness)
-        places = self._places(1.0)
-        if not len(places):
-            places = np.array([1.0])
-        looks = [look for look in map(tight.at, places) if look is not None]
-        walks = [self.walk(usual) for _ in range(self.sweeps.timings)]
+        looks = tight.looks
+        timed = self._timed(usual)[0]
         return {
             "stiffness": stiffness,
             "force": [float(np.hypot(*look.force)) for look in looks],
             "pressure": [0.5 * float(np.trace(look.stress)) for look in looks],
-            "solving": median(path.solving for path in walks),
+            "solving": timed["solving"],
             "converged": float(np.mean([look.converged for look in tight.looks])),
         }
 

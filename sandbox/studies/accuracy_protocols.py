@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from scenes.parameter import Value
 
 # Largest distance of the force-bearing grains of two tight walks (root of the mean square) that counts as the same path [R].
-APART = 0.01
+APART = 0.03
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from sandbox.studies.accuracy_math import (
     coverage,
     extrapolate,
     factor,
+    first_beyond,
     front,
     lead,
     rms,
@@ -121,20 +122,25 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     return summary
 
 
-def until_bifurcation(job: Job) -> Job:
-    """The job without errors beyond the first place at which a tight walk of the sweeps has left the reference.
+def bifurcation(job: Job) -> float | None:
+    """The first place where two tight walks are further apart than ``APART``, those of the sweeps included; None if nowhere.
 
-    Friction and drag make errors in proportion to the increment, which are none of that sort.
+    Friction and drag make errors in proportion to the increment, which are none of that sort: there the sweeps do not count.
     """
-    if "friction" in job:
-        return job
-    ends = [] if job["bifurcation"] is None else [job["bifurcation"]]
-    for walk in job["walks"]:
-        if walk["tolerance"] <= TIGHT:
-            ends += [place["place"] for place in walk["errors"] if place["position"] > APART][:1]
-    if not ends:
-        return job
-    end = min(ends)
+    apart = [walk["apart"] for walk in job["tight"]]
+    if "friction" not in job:
+        tight = [walk["errors"] for walk in job["walks"] if walk["tolerance"] <= TIGHT]
+        apart += [[(place["place"], place["position"]) for place in places] for places in tight]
+    ends = [first_beyond([p for p, _ in row], [d for _, d in row], APART) for row in apart]
+    known = [end for end in ends if end is not None]
+    return min(known) if known else None
+
+
+def until_bifurcation(job: Job) -> Job:
+    """The job without what it says about places at and beyond the first bifurcation."""
+    end = bifurcation(job)
+    if end is None:
+        return {**job, "bifurcation": None}
 
     def cut(walks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         return [
@@ -142,9 +148,20 @@ def until_bifurcation(job: Job) -> Job:
             for walk in walks
         ]
 
-    peers = {name: cut(walks) for name, walks in job["peers"].items()}
-    parts = {"walks": cut(job["walks"]), "budgets": cut(job["budgets"]), "peers": peers}
-    return {**job, **parts, "bifurcation": end}
+    whole = max(1, math.ceil(end) - 1)  # of the scene's own increments; one at least
+    stiff = [
+        {**row, "force": row["force"][:whole], "pressure": row["pressure"][:whole]}
+        for row in job["stiffness"]
+    ]
+    parts = {name: cut(job[name]) for name in ("walks", "budgets", "friction") if name in job}
+    return {
+        **job,
+        **parts,
+        "peers": {name: cut(walks) for name, walks in job["peers"].items()},
+        "stiffness": stiff,
+        "estimate": [row for row in job["estimate"] if row[0] < end],
+        "bifurcation": end,
+    }
 
 
 def default_dot(grid: Sequence[Dot], tolerance: float) -> Dot:
@@ -211,7 +228,7 @@ def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
 
 def estimate(groups: Sequence[Sequence[Sequence[float]]]) -> dict[str, float]:
     """error ≤ A × residual × mean contact force: A from every second increment, and how often it then holds for the others."""
-    found = np.array([pair for group in groups for pair in group]).reshape(-1, 2)
+    found = np.array([row[1:] for group in groups for row in group]).reshape(-1, 2)
     learnt, tried = found[::2], found[1::2]
     amount = factor(learnt[:, 0], learnt[:, 1], SHARE)
     return {

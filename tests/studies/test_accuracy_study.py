@@ -18,10 +18,16 @@ from sandbox import cli
 from sandbox.commands import Protocol as Drive
 from sandbox.session import Session
 from sandbox.studies import accuracy
-from sandbox.studies.accuracy_job import Bench, Job, measure
-from sandbox.studies.accuracy_protocols import PROTOCOLS, QUICK, Protocol
+from sandbox.studies.accuracy_job import Job, measure
+from sandbox.studies.accuracy_protocols import PROTOCOLS, QUICK
 from sandbox.studies.accuracy_report import as_markdown, as_table, percent, statement
-from sandbox.studies.accuracy_summary import estimate, stiffness, summarise, until_bifurcation
+from sandbox.studies.accuracy_summary import (
+    bifurcation,
+    estimate,
+    stiffness,
+    summarise,
+    until_bifurcation,
+)
 from sandbox.studies.accuracy_walk import Knobs, begin, walk
 from sandbox.studies.paper import machine
 from scenes import registry
@@ -80,7 +86,7 @@ def test_errors_fall_with_the_tolerance(row_job: dict[str, Any]) -> None:
     assert len(worst) == len(QUICK.tolerances)
     assert worst[0] > worst[2] > worst[-1]
     assert worst[-1] < 1e-4
-    assert row_job["bifurcation"] is None
+    assert {walked["step"] for walked in row_job["tight"]} == {0.125, 0.25, 0.5, 1.0}
     assert row_job["sliced"] is True
 
 
@@ -110,28 +116,27 @@ def test_summary_and_report(row_job: dict[str, Any]) -> None:
     assert table["error_factor"] > 0.0
 
 
-def test_a_bifurcation_ends_the_errors() -> None:
-    start = begin("grain_row", "mixed", 1, {}, 3)
-    bench = Bench(start, Protocol(lead=3, length=4, starts=1), QUICK)
-    assert bench.bifurcation is None
-    assert list(bench._places(1.0)) == [1.0, 2.0, 3.0, 4.0]
-    bench.bifurcation = 3.0
-    assert list(bench._places(1.0)) == [1.0, 2.0]
-    assert list(bench._places(0.5)) == [0.5, 1.0, 1.5, 2.0, 2.5]
+def test_a_tight_walk_that_leaves_the_reference_ends_the_errors(row_job: dict[str, Any]) -> None:
+    assert bifurcation(row_job) is None
+    job = json.loads(json.dumps(row_job))
+    job["tight"][0]["apart"] = [(0.5, 0.001), (1.5, 0.5), (2.0, 0.001)]
+    cut = until_bifurcation(job)
+    assert cut["bifurcation"] == 1.5
+    for walked in (*cut["walks"], *cut["budgets"], *cut["peers"]["paper's chart"]):
+        assert all(place["place"] < 1.5 for place in walked["errors"])
+    assert len(cut["stiffness"][0]["force"]) == 1
+    assert {row[0] for row in cut["estimate"]} == {1.0}
 
 
-def test_a_tight_walk_that_leaves_the_reference_ends_the_errors_too(
+def test_so_does_a_tight_walk_of_the_sweeps_unless_the_path_has_a_memory(
     row_job: dict[str, Any],
 ) -> None:
-    assert until_bifurcation(row_job) is row_job
     job = json.loads(json.dumps(row_job))
     tight = next(walked for walked in job["walks"] if walked["tolerance"] <= 1e-6)
     tight["errors"][1]["position"] = 0.5
-    cut = until_bifurcation(job)
-    end = tight["errors"][1]["place"]
-    assert cut["bifurcation"] == end
-    for walked in (*cut["walks"], *cut["budgets"], *cut["peers"]["paper's chart"]):
-        assert all(place["place"] < end for place in walked["errors"])
+    assert bifurcation(job) == tight["errors"][1]["place"]
+    job["friction"] = []
+    assert bifurcation(job) is None
 
 
 def test_model_error_is_against_the_extrapolated_limit() -> None:
@@ -146,7 +151,7 @@ def test_model_error_is_against_the_extrapolated_limit() -> None:
 
 
 def test_estimate_is_tried_on_increments_that_it_has_not_seen() -> None:
-    pairs = [[[1.0, 2.0], [1.0, 3.0], [2.0, 4.0], [2.0, 1.0]]]
+    pairs = [[[0.0, 1.0, 2.0], [0.0, 1.0, 3.0], [0.0, 2.0, 4.0], [0.0, 2.0, 1.0]]]
     found = estimate(pairs)
     assert found["factor"] == 2.0
     assert found["coverage"] == 0.5
