@@ -93,7 +93,8 @@ def draw_help(painter: Painter, scroll: int = 0) -> HelpLayout:
     """All keys on one page, scrolled down by so many pixels at most; returns where everything is."""
     size = painter.surface.get_size()
     groups = words.help_groups()
-    for larger in LARGER:  # rather smaller letters than a scroll bar, but not below the window's own
+    # Rather smaller letters than a scroll bar, but not below the window's own.
+    for larger in LARGER:
         own = page_painter(painter, DESIGNED, larger * painter.scale)
         places = help_layout(size, own.type, groups)
         if not places.most_scroll:
