@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 WIDTH = 372.0  # of the card on the canvas at scale 1 [px]
 MARGIN = 10.0  # round it, at scale 1 [px]
 WIDEST = 0.94  # of the canvas
-SHARE = 0.5  # of its width, unless letters would become smaller than at scale 1
+SHARE = 0.42  # of its width, unless letters would become smaller than at scale 1
 LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
 KNOB = 20.0  # room round a handle at scale 1 [px]
 HANDLE_COST = 10_000  # a covered handle counts as so many covered grains
