@@ -16,15 +16,16 @@ from sandbox.frame import Frame
 from sandbox.scene_file import SceneFile, read_scene, write_scene
 from sandbox.session import Session
 from sandbox.views.conductor import Conductor
+from sandbox.views.side_by_side import begins_anew, comparable, way_back
 from sandbox.views.solver_thread import Snapshot, SolverThread
 from scenes import registry
+from scenes.text import message
 
 Settings = Mapping[str, object]
 
 NOTHING_TO_SAVE = "there is nothing to save yet"
 PATIENCE = 2.0  # with a thread that is to end [s]
 LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
-SIDE_BY_SIDE = ("regular", "mixed", "auxetic")  # from the left
 MOST_MISSED = 1500  # increments that a packing that joins repeats; after more all begin anew
 
 
@@ -164,7 +165,7 @@ class Run:
             self._only_main()
             return words.COMPARE_OFF
         frame = self.snapshot.frame
-        kinds = self.comparable()
+        kinds = comparable(self.scene)
         if frame is None or self.snapshot.phase != "running":
             return words.COMPARE_LATER
         if len(kinds) < 2 or frame.packing not in kinds:
@@ -175,7 +176,10 @@ class Run:
             self._built_with = dict(self._settings)
         self.packing = self._first = frame.packing
         others = [kind for kind in kinds if kind != frame.packing]
-        made = [self._another(kind) for kind in others]
+        try:
+            made = [self._another(kind) for kind in others]
+        except InputError as error:
+            return words.say(message(error))
         if not repeat:
             self.send(Reset())
             self._conductor.forget_past()
@@ -189,13 +193,6 @@ class Run:
         if main is not None and main.file is not None:
             return Session.from_file(main.file.of_kind(kind))
         return self._make(self.scene, kind, self.seed, dict(self._built_with))
-
-    def comparable(self) -> tuple[str, ...]:
-        """The packings of the scene that can stand side by side."""
-        if self.scene not in registry.names():
-            return ()
-        known = registry.get(self.scene).packings
-        return tuple(kind for kind in SIDE_BY_SIDE if kind in known)
 
     def cancel(self) -> bool:
         """Break off what is being built; True if a run is left to go on with.
@@ -350,26 +347,12 @@ class Run:
 
     def _back(self, command: Undo | Redo | Recall) -> Command:
         """A way back that all packings can go. Raises InputError if there is none."""
-        frames = [seen.frame for seen in self.snapshots if seen.frame is not None]
-        if self.comparing and isinstance(command, Recall):
-            first = max(frame.first_kept for frame in frames)
-            last = min(frame.last_kept for frame in frames)
-            command = Recall(max(first, min(command.increment, last)))
-        elif self.comparing:
-            able = [f.can_undo if isinstance(command, Undo) else f.can_redo for f in frames]
-            if not all(able):
-                raise InputError("not all packings can go back there")
+        way = way_back(command, [seen.frame for seen in self.snapshots if seen.frame is not None])
         self._straight, self._gone_back = False, self.snapshot.serial
-        return command
+        return way
 
     def _begins_anew(self, command: Command) -> bool:
-        """Does the command end the curve and begin another?"""
-        if not isinstance(command, Change):
-            return isinstance(command, Reset)
-        if self.scene not in registry.names():
-            return True
-        live = {p.name for p in registry.get(self.scene).parameters if p.live}
-        return command.name not in live
+        return begins_anew(self.scene, command)
 
     def _can_be_repeated(self, frame: Frame) -> bool:
         """Can another packing be brought to where this one is, by the same commands?"""

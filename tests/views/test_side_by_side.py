@@ -6,6 +6,7 @@ import csv
 import threading
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import imageio.v2
@@ -13,10 +14,12 @@ import pygame
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
 from sandbox.draw import words
 from sandbox.views import window_record
+from sandbox.views.side_by_side import NOT_ALL, way_back
 from sandbox.views.video import VideoWriter
+from tests.draw.frames import intruder_frame
 from tests.views.desk import Desk
 
 SIDES = ("regular", "mixed", "auxetic")
@@ -150,6 +153,20 @@ def test_one_that_fails_says_so_and_reset_builds_all_anew(desk: Desk) -> None:
     desk.key(pygame.K_r)
     desk.until(lambda: [seen.phase for seen in desk.app.run.snapshots] == ["running"] * 3)
     assert len(desk.sessions) == 6
+
+
+def test_back_goes_only_what_all_can_go(desk: Desk) -> None:
+    compare(desk)
+    desk.app.send(Undo())
+    assert said(desk) == NOT_ALL
+    assert all(Undo() not in session.commands for session in desk.sessions)
+    near, far = (replace(intruder_frame(6), first_kept=2, last_kept=last) for last in (9, 30))
+    assert way_back(Recall(20), [near, far]) == Recall(9)
+    assert way_back(Recall(0), [near, far]) == Recall(2)
+    able = replace(near, can_undo=True)
+    assert way_back(Undo(), [able, replace(far, can_undo=True)]) == Undo()
+    with pytest.raises(InputError):
+        way_back(Undo(), [able, far])
 
 
 def test_a_setting_that_cannot_be_is_refused_in_words(desk: Desk) -> None:
