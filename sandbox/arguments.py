@@ -22,8 +22,15 @@ LARGEST_SIZE = (7680, 4320)
 HIGHEST_FPS = {".mp4": 120.0, ".gif": 50.0, ".png": 120.0}
 MOST_STEPS = 1_000_000
 LARGEST_SEED = 2**63 - 1
+LONGEST_LINE = 400  # letters of a message
 
 T = TypeVar("T")
+
+
+def one_line(message: str) -> str:
+    """A message for the terminal: one line, and not a page of what somebody gave."""
+    plain = " ".join(message.split())
+    return plain if len(plain) <= LONGEST_LINE else f"{plain[: LONGEST_LINE - 2]} …"
 
 
 class Parser(argparse.ArgumentParser):
@@ -156,6 +163,18 @@ def output_file(option: str, text: str, suffixes: Sequence[str]) -> Path:
     path = Path(text)
     if path.suffix.lower() not in suffixes:
         raise InputError(f"{option} {text}: the name must end in {' or '.join(suffixes)}")
+    try:
+        return _writable(option, text, path)
+    except ValueError as error:  # a name that no system takes
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{option} {text!r}: this is no file name ({error})") from None
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise InputError(f"{option} {text}: cannot be written ({reason})") from None
+
+
+def _writable(option: str, text: str, path: Path) -> Path:
     folder = path.resolve().parent
     if not folder.is_dir():
         raise InputError(f"{option} {text}: there is no folder {folder}; make it first")

@@ -39,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         command: Callable[[argparse.Namespace], int] = options.run
         return command(options)
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {arguments.one_line(str(error))}", file=sys.stderr)
         return USER_MISTAKE
     except KeyboardInterrupt:
         print("stopped: nothing was written", file=sys.stderr)

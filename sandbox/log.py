@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import json
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeGuard
@@ -21,6 +22,7 @@ FORMAT = "auxetic-sandbox log"
 VERSION = 1
 VERSION_WITH_START = 2  # of a log that holds a scene file
 LARGEST = 256 * 1024 * 1024  # bytes
+MOST_LINES = 2_000_000  # a hand at a window gives 60 commands a second
 MOST_INCREMENTS = 10_000_000
 
 
@@ -67,17 +69,9 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
 def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a log. Raises InputError for one that is missing, malformed, truncated, hostile or of another version."""
     path = Path(path)
-    try:
-        if path.stat().st_size > LARGEST:
-            raise InputError(f"{path}: larger than any log of this program; not opened")
-        lines = path.read_bytes().decode("utf-8").splitlines()
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error})") from None
-    if not lines:
+    records = list(_records(path))
+    if not records:
         raise InputError(f"{path}: the log is empty")
-    records = [_record(path, number, line) for number, line in enumerate(lines, 1)]
     head, last = records[0], records[-1]
     if head.get("format") != FORMAT:
         raise InputError(
@@ -140,6 +134,28 @@ def _start(path: Path, start: object) -> SceneFile:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path}: line 1: the grains of start are damaged") from None
+
+
+def _records(path: Path) -> Iterator[dict[str, Any]]:
+    """Line after line, so that a hostile file is refused at its first bad line and not after it has filled the memory."""
+    try:
+        if not path.is_file():
+            raise InputError(f"{path}: {'this is no file' if path.exists() else 'no such file'}")
+        if path.stat().st_size > LARGEST:
+            raise InputError(f"{path}: larger than any log of this program; not opened")
+        with path.open(encoding="utf-8", newline="\n") as file:
+            for number, line in enumerate(file, 1):
+                if number > MOST_LINES:
+                    raise InputError(f"{path}: more lines than any log of this program has")
+                yield _record(path, number, line)
+    except InputError:
+        raise
+    except (
+        OSError,
+        ValueError,
+    ) as error:  # also for bytes that are no text, and names that are none
+        reason = " ".join(str(error).split())
+        raise InputError(f"{str(path)!r}: cannot be read ({reason})") from None
 
 
 def _record(path: Path, number: int, line: str) -> dict[str, Any]:

@@ -38,6 +38,7 @@ from sandbox.past import OLD_RUN_BYTES, Moment, Past, Start
 from sandbox.run import Run
 from sandbox.scene_file import Made, SceneFile, put_into, read_scene
 from scenes import registry
+from scenes.parameter import shown
 from scenes.scene import Check, Ingredients, Scene, Setup, Values
 from scenes.text import message
 
@@ -340,5 +341,7 @@ def _silent(text: str, share: float) -> None:
 def check_seed(seed: object) -> int:
     """A seed is a whole number from 0 to 2⁶³ − 1. Raises InputError otherwise."""
     if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**63:
-        raise InputError(f"the seed must be 0 or a positive whole number below 2^63, not {seed!r}")
+        raise InputError(
+            f"the seed must be 0 or a positive whole number below 2^63, not {shown(seed)}"
+        )
     return seed

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-import math
+import reprlib
+import sys
 from dataclasses import dataclass
 
 from core.errors import InputError
 
 Value = float | int | bool
+
+
+def shown(value: object) -> str:
+    """What somebody gave, for a message: in full if it is short."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # a whole number of more digits than Python writes out
+        return "a number without end"
 
 
 @dataclass(frozen=True)
@@ -36,17 +45,17 @@ class Parameter:
         """``value`` as this parameter's type. Raises InputError if it has another type or is out of range."""
         if isinstance(self.default, bool):
             if not isinstance(value, bool):
-                raise InputError(f"{self.name} is a switch: give true or false, not {value!r}")
+                raise InputError(f"{self.name} is a switch: give true or false, not {shown(value)}")
             return value
         if (
             isinstance(value, bool)
             or not isinstance(value, (int, float))
-            or not math.isfinite(value)
+            or not abs(value) <= sys.float_info.max  # isfinite gives up on longer whole numbers
         ):
-            raise InputError(f"{self.name} must be a {self.kind}, not {value!r}")
+            raise InputError(f"{self.name} must be a {self.kind}, not {shown(value)}")
         if isinstance(self.default, int):
             if value != int(value):
-                raise InputError(f"{self.name} must be a whole number, not {value!r}")
+                raise InputError(f"{self.name} must be a whole number, not {shown(value)}")
             value = int(value)
         else:
             value = float(value)
@@ -72,10 +81,10 @@ class Parameter:
                 "0": False,
             }
             if plain not in words:
-                raise InputError(f"{self.name} is a switch: give true or false, not {text!r}")
+                raise InputError(f"{self.name} is a switch: give true or false, not {shown(text)}")
             return words[plain]
         try:
             number = float(plain)
         except ValueError:
-            raise InputError(f"{self.name} must be a {self.kind}, not {text!r}") from None
+            raise InputError(f"{self.name} must be a {self.kind}, not {shown(text)}") from None
         return self.check(number)
