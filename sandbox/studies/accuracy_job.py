@@ -27,10 +27,10 @@ from scenes import registry
 Floats = NDArray[np.float64]
 Stopping = Callable[[], bool]
 
-DATA_VERSION = 1  # raise it when a job measures something else
+DATA_VERSION = 2  # raise it when a job measures something else
 TIGHT = 1e-8  # relative residual of the walks that say where paths part
 CHECKED = 1e-9  # relative residual asked of the Newton polish
-LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
+COMPARED = 2  # starts from which peers, budgets and models are measured
 LONG = 0.25  # [s] a walk that takes so long is not timed again: several starts do that
 SLICE = 200  # force evaluations between two looks of a window
 PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, "paper's chart": paper_chart}
@@ -67,7 +67,7 @@ def measure(job: Job, stopping: Stopping = lambda: False) -> dict[str, Any]:
         return contact_job(scene, plan.length)
     packing = "mixed" if "mixed" in scene.packings else scene.packings[0]
     start = begin(job.scene, packing, job.seed, dict(plan.settings), plan.lead, plan.least_force)
-    return Bench(start, plan, sweeps, stopping).report(full=job.seed == 1)
+    return Bench(start, plan, sweeps, stopping).report(job.seed)
 
 
 class Bench:
@@ -88,6 +88,10 @@ class Bench:
             "shape": 1.0,
             "energy": float(np.mean([look.energy for look in looks])),
         }
+        self.tightest = {
+            step: self.walk(Knobs(tolerance=TIGHT, step=step))
+            for step in (1.0, *sweeps.steps, sweeps.reference_step, 2.0 * sweeps.reference_step)
+        }
 
     def walk(self, knobs: Knobs, length: float | None = None) -> Walk:
         """A walk of the protocol. Raises Stopped."""
@@ -95,38 +99,38 @@ class Bench:
             raise Stopped
         return walk(self.start, knobs, self.plan.length if length is None else length)
 
-    def report(self, full: bool) -> dict[str, Any]:
-        """All that this start has to say; the checks of the reference only if ``full``."""
+    def report(self, seed: int) -> dict[str, Any]:
+        """All that this start has to say; checks of the reference from the first alone, peers and models from two."""
         plan, setup = self.plan, self.start.setup
-        for solve in PEERS.values():
-            self.walk(Knobs(tolerance=0.1, solve=solve), 1)  # compiles
-        grid = list(self._grid())
         result: dict[str, Any] = {
             "grains": len(self.start.packing),
             "length": plan.length,
             "step": setup.solver.step,
             "tolerance": setup.solver.tolerance,
+            "memory": self.start.friction is not None or setup.drag > 0.0,
             "scales": self.scales,
-            "tight": list(self._tight()),
             "reference": self._described(),
-            "walks": [summary for summary, _ in grid],
-            "estimate": self._estimates([path for _, path in grid if path.step == 1.0]),
-            "budgets": [self._timed(knobs)[0] for knobs in self._budgets()],
-            "peers": {
-                name: [
-                    self._timed(Knobs(tolerance=t, solve=solve), 1)[0]
-                    for t in self.sweeps.peer_tolerances
-                ]
-                for name, solve in PEERS.items()
-            },
-            "stiffness": [self._stiffness(c) for c in self.sweeps.stiffness],
-            "overlap": self._overlap(),
+            "tight": list(self._tight()),
+            "walks": list(self._grid()),
             "beyond": [self._beyond(t) for t in self.sweeps.beyond_tolerances if plan.beyond],
             "sliced": self._sliced(),
         }
-        if self.start.friction is not None:
-            result["friction"] = list(self._friction())
-        if full:
+        if seed <= COMPARED:
+            for solve in PEERS.values():
+                self.walk(Knobs(tolerance=0.1, solve=solve), 1)  # compiles
+            result["budgets"] = [self._timed(knobs) for knobs in self._budgets()]
+            result["peers"] = {
+                name: [
+                    self._timed(Knobs(tolerance=tolerance, solve=solve), 1)
+                    for tolerance in self.sweeps.peer_tolerances
+                ]
+                for name, solve in PEERS.items()
+            }
+            result["stiffness"] = [self._stiffness(c) for c in self.sweeps.stiffness]
+            result["overlap"] = self._overlap()
+            if self.start.friction is not None:
+                result["friction"] = list(self._friction())
+        if seed == 1:
             result["check"] = self._check()
         return result
 
@@ -147,12 +151,15 @@ class Bench:
         places: Floats = step * np.arange(1, round(self.plan.length / step) + 1, dtype=np.float64)
         return places
 
-    def _compared(self, path: Walk) -> list[dict[str, float]]:
+    def _compared(self, path: Walk, exact: Walk) -> list[dict[str, float]]:
+        """Errors against another walk wherever both have ended an increment, and how well each was relaxed."""
         found = []
         for place in self._places(path.step):
-            look, exact = path.at(place), self.reference.at(place)
-            if look is not None and exact is not None:
-                found.append({"place": float(place), **self.errors(look, exact)})
+            look, other = path.at(place), exact.at(place)
+            if look is not None and other is not None:
+                row = {"place": float(place), **self.errors(look, other)}
+                row["residual"], row["scale"] = look.residual, look.scale
+                found.append(row)
         return found
 
     def _tight(self) -> Iterator[dict[str, Any]]:
@@ -160,22 +167,24 @@ class Bench:
 
         Friction and drag give the path a memory, and errors in proportion to the increment: there the coarser ones do not count.
         """
-        sweeps = self.sweeps
-        steps = [sweeps.reference_step, 2.0 * sweeps.reference_step]
-        if self.start.friction is None and self.start.setup.drag == 0.0:
-            steps += [step for step in (*sweeps.steps, 1.0) if step <= 1.0]
-        for step in steps:
-            path = self.walk(Knobs(tolerance=TIGHT, step=step))
-            apart = [(error["place"], error["position"]) for error in self._compared(path)]
-            yield {"tolerance": TIGHT, "step": step, "apart": apart}
+        fine = 2.0 * self.sweeps.reference_step
+        memory = self.start.friction is not None or self.start.setup.drag > 0.0
+        for step, path in self.tightest.items():
+            if step <= (fine if memory else 1.0):
+                rows = self._compared(path, self.reference)
+                yield {"step": step, "apart": [(row["place"], row["position"]) for row in rows]}
 
-    def _timed(self, knobs: Knobs, timings: int | None = None) -> tuple[dict[str, Any], Walk]:
-        """A walk several times over: its cost by the middle one, its errors."""
+    def _timed(self, knobs: Knobs, timings: int | None = None) -> dict[str, Any]:
+        """A walk several times over: its cost by the middle one; its errors.
+
+        ``errors`` are those against the reference, ``own`` those against the tightest walk with the same increments: what the
+        relaxation alone is to blame for.
+        """
         path = self.walk(knobs)
         again = (timings or self.sweeps.timings) - 1 if path.seconds < LONG else 0
         paths = [path, *(self.walk(knobs) for _ in range(again))]
         looks = path.looks
-        summary = {
+        return {
             "tolerance": knobs.tolerance,
             "step": knobs.step,
             "budget": knobs.max_iterations,
@@ -186,11 +195,11 @@ class Bench:
             "iterations": float(np.mean([look.iterations for look in looks])),
             "residual": float(np.median([look.residual for look in looks])),
             "converged": float(np.mean([look.converged for look in looks])),
-            "errors": self._compared(path),
+            "errors": self._compared(path, self.reference),
+            "own": self._compared(path, self.tightest[knobs.step]),
         }
-        return summary, path
 
-    def _grid(self) -> Iterator[tuple[dict[str, Any], Walk]]:
+    def _grid(self) -> Iterator[dict[str, Any]]:
         sweeps = self.sweeps
         plan = [(t, 1.0) for t in sweeps.tolerances]
         plan += [(t, step) for step in sweeps.steps for t in sweeps.step_tolerances]
@@ -205,32 +214,14 @@ class Bench:
         """The lag of friction: increments, and relaxations with the friction frozen anew, at a tight tolerance."""
         for repeats in (0, *self.sweeps.repeats):
             for step in (1.0, *self.sweeps.steps):
-                yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)[0]
-
-    def _estimates(self, paths: list[Walk]) -> list[tuple[float, float, float]]:
-        """(place, residual times mean contact force, error of the force) of every increment [k R].
-
-        The error is that against the tightest walk with the same increments: what the residual alone is to blame for.
-        """
-        tightest = min(paths, key=lambda path: path.looks[0].residual)
-        found = []
-        for path in paths:
-            if path is tightest:
-                continue
-            for place in self._places(path.step):
-                look, exact = path.at(place), tightest.at(place)
-                if look is None or exact is None or look.residual < LEAST_RESIDUAL:
-                    continue
-                error = float(np.hypot(*(look.force - exact.force)))
-                found.append((float(place), look.residual * look.scale, error))
-        return found
+                yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)
 
     def _stiffness(self, stiffness: float) -> dict[str, Any]:
         """Force at every place with contacts of that stiffness; and what a walk costs at the scene's own tolerance."""
         tight = self.walk(Knobs(tolerance=TIGHT, contact_stiffness=stiffness))
         usual = Knobs(tolerance=self.start.setup.solver.tolerance, contact_stiffness=stiffness)
         looks = tight.looks
-        timed = self._timed(usual)[0]
+        timed = self._timed(usual)
         return {
             "stiffness": stiffness,
             "force": [float(np.hypot(*look.force)) for look in looks],
@@ -271,8 +262,8 @@ class Bench:
     def _described(self) -> dict[str, Any]:
         """The reference, and how far one of twice its increments is off: its own error where that is in proportion to them."""
         path = self.reference
-        coarser = self.walk(Knobs(tolerance=TIGHT, step=2.0 * path.step))
-        off = [error["force"] for error in self._compared(coarser)]
+        coarser = self._compared(self.tightest[2.0 * path.step], path)
+        off = [error["force"] for error in coarser]
         return {
             "increment_error": rms(off),
             "tolerance": self.sweeps.reference_tolerance,

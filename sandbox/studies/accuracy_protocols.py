@@ -58,7 +58,7 @@ class Sweeps:
 FULL = Sweeps(
     reference_step=1 / 16,
     reference_tolerance=1e-10,
-    tolerances=(1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8),
+    tolerances=(1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8),
     steps=(2.0, 0.5, 0.25),
     step_tolerances=(1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8),
     peer_tolerances=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5),

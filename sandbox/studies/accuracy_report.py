@@ -11,14 +11,16 @@ Row = Sequence[str]
 
 INTRODUCTION = """# Error against run time
 
-Each scene walks a short fixed protocol, from the same start, with many numerical settings. Errors are root mean squares \
-over all increments (of several starts) against a reference, relative to the mean magnitude of the same quantity over \
-the protocol; positions (of grains that bear force) and shapes in R, the radius of a large grain. Run time is processor \
-time of the solving thread, without compiling, the middle one of repeated walks; per increment.
+Each scene walks a short fixed protocol, from the same start, with many numerical settings. Errors are root mean \
+squares over all increments (of several starts) against a reference, relative to the mean magnitude of the same \
+quantity over the protocol; positions (of grains that bear force) and shapes in R, the radius of a large grain. Run \
+time is processor time of the solving thread, without compiling, the middle one of repeated walks; per increment.
 
-A path of grains can bifurcate: from the first place where two tight walks are further apart than {apart} R (root mean \
-square over the force-bearing grains), trajectories mean nothing, and errors end. What is meaningful beyond it, \
-distributions over seeds, stands in a table of its own."""
+A path of grains can bifurcate: from the first place where two tight walks are further apart than {apart} R (root \
+mean square over the force-bearing grains), trajectories mean nothing, and errors end. What is meaningful beyond \
+it, distributions over seeds, stands in a table of its own. Where a path bifurcates within an increment or two, \
+errors are those of the increment instead of the path: against the tightest walk with the same increments, as long \
+as tight ones stay together."""
 
 Cell = Callable[[str, Summary], str]
 
@@ -55,7 +57,8 @@ def statement(summary: Summary) -> str:
         law = summary["halvings"][0]
         return f"contact distance within {percent(law['error'])} in {1e9 * law['seconds']:.2g} ns a contact"
     default = summary["default"]
-    return f"force within {percent(default['force'])} in {milliseconds(default['increment'])} ms an increment"
+    cost = f"in {milliseconds(default['increment'])} ms an increment"
+    return f"force within {percent(default['force'])} {cost}"
 
 
 def as_table(summaries: Mapping[str, Summary]) -> str:
@@ -155,6 +158,7 @@ def _defaults(summaries: Mapping[str, Summary]) -> Iterator[Row]:
         "scene",
         "grains",
         "tolerance",
+        "errors of",
         "force",
         "worst",
         "stress",
@@ -172,6 +176,7 @@ def _defaults(summaries: Mapping[str, Summary]) -> Iterator[Row]:
             f"`{name}`",
             str(summary["grains"]),
             power(dot["tolerance"]),
+            summary["against"],
             percent(dot["force"]),
             percent(dot["force_most"]),
             percent(dot["stress"]),

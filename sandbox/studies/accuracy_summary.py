@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -25,6 +25,8 @@ Job = Mapping[str, Any]
 
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
 SHARE = 0.95  # of the increments in which the estimate is to be above the error
+PLACES = 3  # of the scene's own increments before bifurcations that make errors along the path worth a name
+LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
 TIGHT = 1e-6  # a tolerance up to which walks say where paths part
 FRAME = 1.0 / 60.0  # [s]
 
@@ -87,10 +89,18 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     first = jobs[0]
     if "contact" in first:
         return _contact(first)
-    jobs = [until_bifurcation(job) for job in jobs]
+    ends = [bifurcation(job) for job in jobs]
+    path = sum(_default_places(job, end) for job, end in zip(jobs, ends, strict=True)) >= PLACES
+    jobs = [
+        along_path(job, end) if path else own_increments(job)
+        for job, end in zip(jobs, ends, strict=True)
+    ]
     length = float(first["length"])
+    compared = [job for job in jobs if "peers" in job]
     grid = dots([job["walks"] for job in jobs], length)
-    peers = {name: dots([job["peers"][name] for job in jobs], length) for name in first["peers"]}
+    peers = {
+        name: dots([job["peers"][name] for job in compared], length) for name in first["peers"]
+    }
     best = _front(grid)
     default = default_dot(grid, first["tolerance"])
     summary: dict[str, Any] = {
@@ -99,8 +109,9 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "length": length,
         "increment": first["step"],
         "tolerance": first["tolerance"],
+        "against": "path" if path else "increment",
         "scales": [job["scales"] for job in jobs],
-        "bifurcations": [job["bifurcation"] for job in jobs],
+        "bifurcations": ends,
         "reference": _reference(jobs),
         "check": first["check"],
         "dots": [asdict(dot) for dot in grid],
@@ -108,16 +119,16 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "default": asdict(default),
         "frames": default.increment / FRAME,
         "sliced": all(job["sliced"] for job in jobs),
-        "budgets": [asdict(dot) for dot in dots([job["budgets"] for job in jobs], length)],
+        "budgets": [asdict(dot) for dot in dots([job["budgets"] for job in compared], length)],
         "peers": {name: [asdict(dot) for dot in found] for name, found in peers.items()},
         "lead": {name: _lead(best, found) for name, found in peers.items()},
-        "stiffness": stiffness([job["stiffness"] for job in jobs]),
-        "overlap": _overlap(jobs),
+        "stiffness": stiffness([job["stiffness"] for job in compared]),
+        "overlap": _overlap(compared),
         "estimate": estimate([job["estimate"] for job in jobs]),
         "beyond": beyond([job["beyond"] for job in jobs]),
     }
     if "friction" in first:
-        found = dots([job["friction"] for job in jobs], length)
+        found = dots([job["friction"] for job in compared], length)
         summary["friction"] = [asdict(dot) for dot in found]
     return summary
 
@@ -128,40 +139,87 @@ def bifurcation(job: Job) -> float | None:
     Friction and drag make errors in proportion to the increment, which are none of that sort: there the sweeps do not count.
     """
     apart = [walk["apart"] for walk in job["tight"]]
-    if "friction" not in job:
-        tight = [walk["errors"] for walk in job["walks"] if walk["tolerance"] <= TIGHT]
-        apart += [[(place["place"], place["position"]) for place in places] for places in tight]
+    if not job["memory"]:
+        apart += [_apart(walk["errors"]) for walk in job["walks"] if walk["tolerance"] <= TIGHT]
+    return _parting(apart)
+
+
+def along_path(job: Job, end: float | None) -> Job:
+    """The job with errors against the reference, before the first bifurcation."""
+
+    def cut(walks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        return [{**walk, "errors": _before(walk["errors"], end)} for walk in walks]
+
+    return _cut(job, cut, own_end(job, 1.0) if end is None else end)
+
+
+def own_increments(job: Job) -> Job:
+    """The job with errors against the tightest walk with the same increments, as long as tight ones stay together.
+
+    For paths that bifurcate within an increment: what the relaxation does can be told, what the increments do cannot.
+    """
+
+    def cut(walks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        return [
+            {**walk, "errors": _before(walk["own"], own_end(job, walk["step"]))} for walk in walks
+        ]
+
+    return _cut(job, cut, own_end(job, 1.0))
+
+
+def own_end(job: Job, step: float) -> float | None:
+    """Where tight walks with those increments part."""
+    return _parting(
+        [
+            _apart(walk["own"])
+            for walk in job["walks"]
+            if walk["tolerance"] <= TIGHT and walk["step"] == step
+        ]
+    )
+
+
+def _cut(job: Job, cut: Callable[[Any], list[dict[str, Any]]], end: float | None) -> Job:
+    """The job with the lists of walks cut, forces of each stiffness too, and what calibrates the estimate picked out."""
+    parts: dict[str, Any] = {
+        name: cut(job[name]) for name in ("walks", "budgets", "friction") if name in job
+    }
+    if "peers" in job:
+        parts["peers"] = {name: cut(walks) for name, walks in job["peers"].items()}
+        whole = None if end is None else max(1, math.ceil(end) - 1)  # increments; one at least
+        parts["stiffness"] = [
+            {**row, "force": row["force"][:whole], "pressure": row["pressure"][:whole]}
+            for row in job["stiffness"]
+        ]
+    rows = [row for walk in job["walks"] if walk["step"] == 1.0 for row in _trusted(walk)]
+    kept = _before(rows, own_end(job, 1.0))
+    force = job["scales"]["force"]
+    parts["estimate"] = [(row["residual"] * row["scale"], row["force"] * force) for row in kept]
+    return {**job, **parts}
+
+
+def _trusted(walk: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Increments by which an estimate can be judged: the tightest walk is much better than they are."""
+    return [row for row in walk["own"] if row["residual"] >= LEAST_RESIDUAL]
+
+
+def _before(rows: Sequence[Mapping[str, Any]], end: float | None) -> list[Mapping[str, Any]]:
+    return [row for row in rows if end is None or row["place"] < end - 1e-9]
+
+
+def _apart(rows: Sequence[Mapping[str, Any]]) -> list[tuple[float, float]]:
+    return [(row["place"], row["position"]) for row in rows]
+
+
+def _parting(apart: Iterable[Sequence[Sequence[float]]]) -> float | None:
     ends = [first_beyond([p for p, _ in row], [d for _, d in row], APART) for row in apart]
     known = [end for end in ends if end is not None]
     return min(known) if known else None
 
 
-def until_bifurcation(job: Job) -> Job:
-    """The job without what it says about places at and beyond the first bifurcation."""
-    end = bifurcation(job)
-    if end is None:
-        return {**job, "bifurcation": None}
-
-    def cut(walks: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-        return [
-            {**walk, "errors": [place for place in walk["errors"] if place["place"] < end]}
-            for walk in walks
-        ]
-
-    whole = max(1, math.ceil(end) - 1)  # of the scene's own increments; one at least
-    stiff = [
-        {**row, "force": row["force"][:whole], "pressure": row["pressure"][:whole]}
-        for row in job["stiffness"]
-    ]
-    parts = {name: cut(job[name]) for name in ("walks", "budgets", "friction") if name in job}
-    return {
-        **job,
-        **parts,
-        "peers": {name: cut(walks) for name, walks in job["peers"].items()},
-        "stiffness": stiff,
-        "estimate": [row for row in job["estimate"] if row[0] < end],
-        "bifurcation": end,
-    }
+def _default_places(job: Job, end: float | None) -> int:
+    """How many of the scene's own increments end before a bifurcation."""
+    walk = next(walk for walk in job["walks"] if walk["step"] == 1.0)
+    return len(_before(walk["errors"], end))
 
 
 def default_dot(grid: Sequence[Dot], tolerance: float) -> Dot:
@@ -228,7 +286,7 @@ def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
 
 def estimate(groups: Sequence[Sequence[Sequence[float]]]) -> dict[str, float]:
     """error ≤ A × residual × mean contact force: A from every second increment, and how often it then holds for the others."""
-    found = np.array([row[1:] for group in groups for row in group]).reshape(-1, 2)
+    found = np.array([row for group in groups for row in group]).reshape(-1, 2)
     learnt, tried = found[::2], found[1::2]
     amount = factor(learnt[:, 0], learnt[:, 1], SHARE)
     return {

@@ -22,11 +22,13 @@ from sandbox.studies.accuracy_job import Job, measure
 from sandbox.studies.accuracy_protocols import PROTOCOLS, QUICK
 from sandbox.studies.accuracy_report import as_markdown, as_table, percent, statement
 from sandbox.studies.accuracy_summary import (
+    along_path,
     bifurcation,
     estimate,
+    own_end,
+    own_increments,
     stiffness,
     summarise,
-    until_bifurcation,
 )
 from sandbox.studies.accuracy_walk import Knobs, begin, walk
 from sandbox.studies.paper import machine
@@ -120,12 +122,11 @@ def test_a_tight_walk_that_leaves_the_reference_ends_the_errors(row_job: dict[st
     assert bifurcation(row_job) is None
     job = json.loads(json.dumps(row_job))
     job["tight"][0]["apart"] = [(0.5, 0.001), (1.5, 0.5), (2.0, 0.001)]
-    cut = until_bifurcation(job)
-    assert cut["bifurcation"] == 1.5
+    assert bifurcation(job) == 1.5
+    cut = along_path(job, 1.5)
     for walked in (*cut["walks"], *cut["budgets"], *cut["peers"]["paper's chart"]):
         assert all(place["place"] < 1.5 for place in walked["errors"])
     assert len(cut["stiffness"][0]["force"]) == 1
-    assert {row[0] for row in cut["estimate"]} == {1.0}
 
 
 def test_so_does_a_tight_walk_of_the_sweeps_unless_the_path_has_a_memory(
@@ -135,8 +136,26 @@ def test_so_does_a_tight_walk_of_the_sweeps_unless_the_path_has_a_memory(
     tight = next(walked for walked in job["walks"] if walked["tolerance"] <= 1e-6)
     tight["errors"][1]["position"] = 0.5
     assert bifurcation(job) == tight["errors"][1]["place"]
-    job["friction"] = []
+    job["memory"] = True
     assert bifurcation(job) is None
+
+
+def test_where_the_path_bifurcates_at_once_errors_are_those_of_the_increment(
+    row_job: dict[str, Any],
+) -> None:
+    job = json.loads(json.dumps(row_job))
+    assert summarise([job])["against"] == "path"
+    job["tight"][0]["apart"] = [(0.5, 0.5)]
+    summary = summarise([job])
+    assert summary["against"] == "increment"
+    assert 0.0 < summary["default"]["force"] < 1e-2
+    tight = next(walked for walked in job["walks"] if walked["tolerance"] <= 1e-6)
+    tight["own"][1]["position"] = 0.5
+    end = tight["own"][1]["place"]
+    assert own_end(job, 1.0) == end
+    for walked in own_increments(job)["walks"]:
+        if walked["step"] == 1.0:
+            assert [place["place"] < end for place in walked["errors"]] == [True]
 
 
 def test_model_error_is_against_the_extrapolated_limit() -> None:
@@ -151,7 +170,7 @@ def test_model_error_is_against_the_extrapolated_limit() -> None:
 
 
 def test_estimate_is_tried_on_increments_that_it_has_not_seen() -> None:
-    pairs = [[[0.0, 1.0, 2.0], [0.0, 1.0, 3.0], [0.0, 2.0, 4.0], [0.0, 2.0, 1.0]]]
+    pairs = [[[1.0, 2.0], [1.0, 3.0], [2.0, 4.0], [2.0, 1.0]]]
     found = estimate(pairs)
     assert found["factor"] == 2.0
     assert found["coverage"] == 0.5
