@@ -42,26 +42,30 @@ class Lists(NamedTuple):
     start: NDArray[np.int64]  # (K + 2,)
 
 
-def allocate(grains: int, pairs: int, slots: int) -> Lists:
-    """Arrays for ``grains`` grains with at most ``pairs`` pairs in all and ``slots`` neighbours for any one grain."""
+def allocate(grains: int, pairs: int, slots: int = 0) -> Lists:
+    """Arrays for ``grains`` grains with at most ``pairs`` pairs in all and ``slots`` neighbours for any one grain.
+
+    Without slots they are enough for ``find_pairs``, and no more.
+    """
     pairs = max(8, pairs)
-    entries = 2 * pairs + SLOT_PADDING * slots
+    laid_out = grains if slots else 0
+    entries = 2 * pairs + SLOT_PADDING * slots if slots else 0
     integers = lambda n: np.zeros(n, dtype=np.int64)  # noqa: E731
     return Lists(
         width=integers(slots),
         offset=integers(slots),
         neighbor=np.zeros(entries, dtype=np.uint32),
         stiffness=np.zeros(entries),
-        order=integers(grains),
+        order=integers(laid_out),
         cell_order=integers(grains),
         cell_start=integers(4 * grains + 32),
         cell_of=integers(grains),
         sorted=np.zeros((3, grains)),
-        degree=integers(grains),
-        place=integers(grains),
+        degree=integers(laid_out),
+        place=integers(laid_out),
         first=integers(pairs),
         second=integers(pairs),
-        filled=integers(grains),
+        filled=integers(laid_out),
         start=integers(slots + 2),
     )
 

@@ -126,9 +126,9 @@ def grain_contacts(packing: Packing) -> GrainContacts:
         none, zero = np.zeros(0, dtype=np.int64), np.zeros(0)
         return GrainContacts(none, none, zero, zero, zero, zero, zero, zero)
     box = None if packing.box is None else packing.box.kernel_form()
-    room = 6 * count
+    room = 4 * count
     while True:
-        lists = neighbors.allocate(count, room, 1)
+        lists = neighbors.allocate(count, room)
         pairs = neighbors.find_pairs(packing.state, 0.0, lists, box)
         if pairs >= 0:
             break

@@ -118,6 +118,8 @@ class Quasistatic:
         self._start_box = packing.box
         self._placement: Floats = world.placement()
         self._primitives: Floats = world.primitives()[0]
+        self._touched: observables.RigidContacts | None = None  # when the relaxation began
+        self._deep: set[int] = set()  # and the grains deep in a body then
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
         self._own_motion: Floats = np.zeros_like(self._carried)
@@ -205,6 +207,9 @@ class Quasistatic:
         self._carried = self.packing.state[:2].copy()
         if self._relaxes and self.drag == 0.0:
             self._predict()
+        if self._relaxes:
+            self._touched = (self._contacts or self.contacts())[1]
+            self._deep = deep_grains(self.packing, self._touched, self.settings.step)
         primitives, _ = self.world.primitives()
         settings = self.settings
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
@@ -223,20 +228,26 @@ class Quasistatic:
 
     def relax(self, max_iterations: int) -> Increment | None:
         """Go on relaxing for at most ``max_iterations`` force evaluations. The finished increment, or None: call again."""
-        if self._relaxation is None:
+        relaxation = self._relaxation
+        if relaxation is None:
             raise RuntimeError("no increment is begun")
-        report = self._relaxation.run(max_iterations if self._relaxes else 1)
+        report = relaxation.run(max_iterations if self._relaxes else 1)
         if not self._relaxes and report.reason in (StopReason.BUDGET, StopReason.ITERATION_LIMIT):
             report = replace(report, reason=StopReason.CONVERGED, residual=0.0)
         if report.reason is StopReason.BUDGET:
             return None
         contacts = None
-        if self._relaxes and report.reason not in FAILED:
-            before = (self._contacts or self.contacts())[1]
-            deep_before = deep_grains(self.packing, before, self.settings.step)
-            self._relaxation.write_back()
+        unbalanced = np.zeros(len(self.packing))
+        turned = None if self.friction is None else relaxation.turned()
+        relaxed = self._relaxes and report.reason not in FAILED
+        if relaxed:
+            relaxation.write_back()
+            unbalanced = np.hypot(*relaxation.forces()[:2])
+        self._relaxation = relaxation = None  # its arrays make room for those of the contacts
+        if relaxed:
+            assert self._touched is not None
             contacts = self.contacts()
-            if self._went_into_bodies(before, contacts[1], deep_before):
+            if self._went_into_bodies(self._touched, contacts[1], self._deep):
                 report = replace(report, reason=StopReason.SUNK)
         good = report.reason not in FAILED
         if not good:
@@ -245,13 +256,10 @@ class Quasistatic:
             self.packing.box = self._start_box
             self.world.place(self._placement)
             contacts = None
-        unbalanced = np.zeros(len(self.packing))
-        if good and self._relaxes:
-            unbalanced = np.hypot(*self._relaxation.forces()[:2])
+            unbalanced[:] = 0.0
         forces = None
-        if good and self.friction is not None and self._frozen is not None:
-            forces = self.friction.end(self._frozen, self.packing, self._relaxation.turned())
-        self._relaxation = None
+        if good and self.friction is not None and self._frozen is not None and turned is not None:
+            forces = self.friction.end(self._frozen, self.packing, turned)
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._moved

@@ -243,7 +243,7 @@ def _minimizer(packing: Packing, spins: bool) -> fire.Minimizer:
             area_stiffness=area_modulus(nu, stiffness) / rest_area,
             shape_stiffness=shape_stiffness,
         ),
-        lists=neighbors.allocate(count, 6 * count, 24),
+        lists=neighbors.allocate(count, 4 * count, 24),
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),

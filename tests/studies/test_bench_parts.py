@@ -200,6 +200,13 @@ def test_tiles_make_the_numbers_they_stand_for() -> None:
     assert set(bench_scaling.QUICK) < set(bench_scaling.TILES)
 
 
+def test_an_increment_keeps_to_its_room() -> None:
+    """A kilobyte a grain at its peak: forces, lists and what is measured at the end are not all there at once."""
+    seed = pack(Recipe("mixed"), seed=1, count=500, packing_fraction=0.9)
+    used = bench_scaling.memory(2_000, seed)
+    assert used["arrays_bytes"] < used["peak_bytes"] < bench_scaling.BYTES
+
+
 def test_bytes_of_nested_arrays() -> None:
     assert bench_scaling._bytes([np.zeros(3), (np.zeros(2), (1.0, np.zeros(1, np.uint32)))]) == 44
 
