@@ -24,10 +24,11 @@ def deep_grains(packing: Packing, contacts: RigidContacts, step: float) -> set[i
 
 def passed_faces(
     contacts: RigidContacts, start: Floats, state: Floats, rows_then: Floats, rows_now: Floats
-) -> bool:
-    """True if a grain of ``contacts`` has gone through the face that it touches or touched, from one side to the other.
+) -> set[tuple[int, int]]:
+    """Grain and primitive, for the grains of ``contacts`` that are on the other side of a face that they touched.
 
-    ``start`` and ``state`` (5, N) are the grains before and after, ``rows_then`` and ``rows_now`` (M, 8) the primitives.
+    ``start`` and ``state`` (5, N) are the grains before and after, ``rows_then`` and ``rows_now`` (M, 8) the primitives. For
+    small moves only: after a long one nobody can tell a way through from one around.
     """
     face = rows_now[contacts.primitive, 0] == EDGE
     grain, primitive = contacts.grain[face], contacts.primitive[face]
@@ -41,4 +42,5 @@ def passed_faces(
         length = (rows[:, 5] - rows[:, 1]) * ux + (rows[:, 6] - rows[:, 2]) * uy
         over &= (along >= 0.0) & (along <= length)
         sides.append(ux * dy - uy * dx >= 0.0)
-    return bool(np.any(over & (sides[0] != sides[1])))
+    passed = over & (sides[0] != sides[1])
+    return set(zip(grain[passed].tolist(), primitive[passed].tolist(), strict=True))

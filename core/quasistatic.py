@@ -117,9 +117,10 @@ class Quasistatic:
         self._start: Floats = packing.state.copy()
         self._start_box = packing.box
         self._placement: Floats = world.placement()
-        self._primitives: Floats = world.primitives()[0]
-        self._touched: observables.RigidContacts | None = None  # when the relaxation began
-        self._deep: set[int] = set()  # and the grains deep in a body then
+        self._deep: set[int] = set()  # grains deep in a body when the relaxation began
+        self._through: set[tuple[int, int]] = (
+            set()
+        )  # and those that were moved through one, see ``passage``
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
         self._own_motion: Floats = np.zeros_like(self._carried)
@@ -189,7 +190,7 @@ class Quasistatic:
         if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
             self._contacts = None
         self._placement = self.world.placement()
-        self._primitives = self.world.primitives()[0]
+        rows_then = self.world.primitives()[0]
         for name, target in targets.items():
             push = self.reactions[self.world.index(name)]
             moved, stopped = self.world.advance(
@@ -207,10 +208,12 @@ class Quasistatic:
         self._carried = self.packing.state[:2].copy()
         if self._relaxes and self.drag == 0.0:
             self._predict()
-        if self._relaxes:
-            self._touched = (self._contacts or self.contacts())[1]
-            self._deep = deep_grains(self.packing, self._touched, self.settings.step)
         primitives, _ = self.world.primitives()
+        if self._relaxes:
+            touched = (self._contacts or self.contacts())[1]
+            ways = self._start, self.packing.state, rows_then, primitives
+            self._deep = deep_grains(self.packing, touched, self.settings.step)
+            self._through = passed_faces(touched, *ways)
         settings = self.settings
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
@@ -243,11 +246,12 @@ class Quasistatic:
         if relaxed:
             relaxation.write_back()
             unbalanced = np.hypot(*relaxation.forces()[:2])
+            self._through ^= relaxation.gone_through()
         self._relaxation = relaxation = None  # its arrays make room for those of the contacts
         if relaxed:
-            assert self._touched is not None
             contacts = self.contacts()
-            if self._went_into_bodies(self._touched, contacts[1], self._deep):
+            deep = deep_grains(self.packing, contacts[1], self.settings.step)
+            if self._through or deep - self._deep:
                 report = replace(report, reason=StopReason.SUNK)
         good = report.reason not in FAILED
         if not good:
@@ -380,18 +384,6 @@ class Quasistatic:
         self._frozen = self.friction.begin(
             self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
         )
-
-    def _went_into_bodies(
-        self,
-        before: observables.RigidContacts,
-        now: observables.RigidContacts,
-        deep_before: set[int],
-    ) -> bool:
-        """True if a grain has sunk into a body, or gone through a face of it, in this increment."""
-        if deep_grains(self.packing, now, self.settings.step) - deep_before:
-            return True
-        ways = self._start, self.packing.state, self._primitives, self.world.primitives()[0]
-        return passed_faces(now, *ways) or passed_faces(before, *ways)
 
     def _observe(
         self,

@@ -108,6 +108,7 @@ class Relaxation:
             start = packing.state[:2].copy()
             self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
         self._minimizer = _minimizer(packing, friction is not None)
+        self._through: set[tuple[int, int]] = set()
         self.threads = threads
         self._shared = share(threads, count)
         stiffest = float(packing.contact_stiffness.max()) if count else 1.0
@@ -174,6 +175,10 @@ class Relaxation:
             iterations=self.iterations,
         )
 
+    def gone_through(self) -> set[tuple[int, int]]:
+        """Grain and primitive, for the grains that have gone through an edge since the bodies came to rest."""
+        return self._through ^ self._changed_sides()
+
     def write_back(self) -> None:
         """Put the relaxed state into the packing, in the packing's own order."""
         self.packing.state[:, self._minimizer.identity] = self._minimizer.state[:5]
@@ -190,7 +195,20 @@ class Relaxation:
         forces[:, self._minimizer.identity] = self._minimizer.force
         return forces
 
+    def _changed_sides(self) -> set[tuple[int, int]]:
+        """Grain and primitive, for the grains that have gone through an edge since the lists were made."""
+        m, rigid = self._minimizer, self._rigid
+        if rigid is None or m.control[fire.LISTED] == 0.0:
+            return set()
+        changed = np.flatnonzero(
+            rigid_contacts.changed_sides(m.reference, m.state, rigid, self._box)
+        )
+        grains, primitives = m.identity[rigid.grain[changed]], rigid.primitive[changed]
+        return set(zip(grains.tolist(), primitives.tolist(), strict=True))
+
     def _relist(self) -> None:
+        # At new lists, as no grain has then come far since the last: later nobody can tell a way through from one around.
+        self._through ^= self._changed_sides()
         while True:
             answer = fire.relist(
                 self._minimizer, self._box, self._rigid, self._friction, self._limits.skin

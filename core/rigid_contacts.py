@@ -206,6 +206,34 @@ def find_rigid_pairs(state, rigid, reach, box):
 
 
 @kernel
+def changed_sides(before, after, rigid, box):
+    """True for the listed pairs of which the grain is on the other side of an edge after than before, and beside it both times.
+
+    ``before`` and ``after`` (5 or 6, N). Nearer together than the list's reach, no path leads around the edge's end.
+    """
+    primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
+    used = rigid.used[0]
+    changed = np.zeros(used, dtype=np.bool_)
+    for k in range(used):
+        i, m = grain[k], primitive[k]
+        if primitives[m, 0] != EDGE:
+            continue
+        ux, uy = primitives[m, 3], primitives[m, 4]
+        x0, y0 = primitives[m, 1], primitives[m, 2]
+        length = (primitives[m, 5] - x0) * ux + (primitives[m, 6] - y0) * uy
+        x, y = image(primitives, m, before[0, i], before[1, i], box)
+        dx, dy = x - x0, y - y0
+        later_x = dx + after[0, i] - before[0, i]
+        later_y = dy + after[1, i] - before[1, i]
+        along = dx * ux + dy * uy
+        later = later_x * ux + later_y * uy
+        beside = along >= 0.0 and along <= length and later >= 0.0 and later <= length
+        then, now = ux * dy - uy * dx, ux * later_y - uy * later_x
+        changed[k] = beside and (then >= 0.0) != (now >= 0.0)
+    return changed
+
+
+@kernel
 def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box):
     """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
     # Every array is fetched once: inside the loop each look into the tuple would cost two atomic reference counts.

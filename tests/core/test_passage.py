@@ -8,7 +8,15 @@ import pytest
 from core.observables import RigidContacts
 from core.packing import Packing
 from core.passage import deep_grains, passed_faces
-from core.rigid_contacts import DISC, EDGE
+from core.relaxation import Relaxation
+from core.rigid_contacts import (
+    DISC,
+    EDGE,
+    RigidTerms,
+    allocate,
+    changed_sides,
+    find_rigid_pairs,
+)
 
 FACE = [EDGE, 0.0, 0.0, 1.0, 0.0, 10.0, 0.0, 0.2]
 
@@ -39,7 +47,8 @@ def test_from_one_side_of_a_face_to_the_other(
     before: tuple[float, float], after: tuple[float, float], passed: bool
 ) -> None:
     rows = np.array([FACE])
-    assert passed_faces(touching(), state(*before), state(*after), rows, rows) is passed
+    found = passed_faces(touching(), state(*before), state(*after), rows, rows)
+    assert found == ({(0, 0)} if passed else set())
 
 
 def test_a_face_that_moves_past_a_grain_counts_and_one_that_takes_it_along_does_not() -> None:
@@ -62,3 +71,36 @@ def test_deep_means_that_one_more_step_could_take_the_face_past_the_centre() -> 
     packing.set_axes(1.2, 0.8, 0.3)
     assert deep_grains(packing, touching(overlap=0.76), 0.05) == {0}
     assert deep_grains(packing, touching(overlap=0.74), 0.05) == set()
+
+
+def listed(*centres: tuple[float, float]) -> tuple[np.ndarray, RigidTerms]:
+    """Grains of radius 1 and the list of those near the face."""
+    states = np.concatenate([state(x, y) for x, y in centres], axis=1)
+    terms = allocate(np.array([FACE]), len(centres))
+    assert find_rigid_pairs(states, terms, 0.15, None)
+    return states, terms
+
+
+def test_between_two_lists_a_grain_changes_sides_only_by_going_through() -> None:
+    before, terms = listed((5.0, 0.05), (5.0, 0.2), (10.05, 0.05), (0.02, -0.02), (5.0, 9.0))
+    after = before.copy()
+    after[1] -= 0.1
+    after[1, 3] += 0.15
+    after[0, 2:4] -= (0.0, 0.05)
+    changed = changed_sides(before, after, terms, None)
+    assert terms.used[0] == 4
+    assert terms.grain[: terms.used[0]][changed].tolist() == [0]  # the others stay, or go around
+
+
+def test_through_and_back_is_not_through() -> None:
+    """Only where a grain ends counts: looks at every new list add up."""
+    packing = Packing([5.0], [0.4])
+    relaxation = Relaxation(packing, np.array([FACE]), gravity=(0.0, -1e-3))
+    relaxation.run(1)
+    state_now = relaxation._minimizer.state
+    state_now[1] = -0.01
+    assert relaxation.gone_through() == {(0, 0)}
+    relaxation._relist()
+    assert relaxation.gone_through() == {(0, 0)}
+    state_now[1] = 0.02
+    assert relaxation.gone_through() == set()
