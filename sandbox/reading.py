@@ -10,6 +10,7 @@ from core.quasistatic import Increment
 from core.relaxation import FAILED, StopReason
 from sandbox.course import Course
 from sandbox.history import Row
+from scenes.accuracy import Accuracy
 from scenes.scene import Setup
 from scenes.text import Text
 
@@ -44,12 +45,11 @@ def follow_drive(course: Course, setup: Setup, increment: Increment) -> None:
 
 
 def read_off(
-    course: Course, setup: Setup, increment: Increment, number: int, error_factor: float
+    course: Course, setup: Setup, increment: Increment, number: int, accuracy: Accuracy
 ) -> Row:
     """The row of the history for an increment, the ``number``-th.
 
-    The error of the force on the handle is estimated as ``error_factor`` × residual × mean contact force: with the factor of
-    its scene it was below that in 95 % of the increments of ``study accuracy``, see ``scenes.accuracy``.
+    ``accuracy`` is that of the scene; the error of the force on the handle is estimated by it.
     """
     fx = fy = 0.0
     drive = setup.handles[0].body
@@ -73,7 +73,7 @@ def read_off(
         iterations=report.iterations,
         stop_reason=str(report.reason),
         resisting=float(resisting),
-        force_error=error_factor * report.residual * report.mean_contact_force,
+        force_error=accuracy.force_error(report.residual, report.mean_contact_force),
     )
 
 

@@ -170,8 +170,8 @@ class Run(Driven):
         return True
 
     def _record(self, increment: Increment) -> None:
-        factor = self.scene.accuracy.error_factor
-        row = read_off(self._course, self.setup, increment, len(self.history), factor)
+        known = self.scene.accuracy
+        row = read_off(self._course, self.setup, increment, len(self.history), known)
         self.history.append(row)
 
     @property

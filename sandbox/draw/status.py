@@ -15,7 +15,7 @@ from sandbox.draw.text import BODY
 from sandbox.draw.theme import Theme, mix
 from sandbox.frame import CONVERGED, Frame
 
-ROUGH = 0.2  # an estimated error of the force on the handle above which settled is not yet green
+ROUGH = 0.5  # an estimated error of the force on the handle above which settled is not yet green
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,7 @@ Job = Mapping[str, Any]
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
 SHARE = 0.95  # of the increments in which the estimate is to be above the error
 PLACES = 3  # of the scene's own increments before bifurcations that make errors along the path worth a name
+POWERS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)  # of the residual in the estimate, to choose from
 LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
 TIGHT = 1e-6  # a tolerance up to which walks say where paths part
 FRAME = 1.0 / 60.0  # [s]
@@ -124,7 +125,7 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "lead": {name: _lead(best, found) for name, found in peers.items()},
         "stiffness": stiffness([job["stiffness"] for job in compared]),
         "overlap": _overlap(compared),
-        "estimate": estimate([job["estimate"] for job in jobs]),
+        "estimate": _estimate(jobs),
         "beyond": beyond([job["beyond"] for job in jobs]),
     }
     if "friction" in first:
@@ -193,7 +194,7 @@ def _cut(job: Job, cut: Callable[[Any], list[dict[str, Any]]], end: float | None
     rows = [row for walk in job["walks"] if walk["step"] == 1.0 for row in _trusted(walk)]
     kept = _before(rows, own_end(job, 1.0))
     force = job["scales"]["force"]
-    parts["estimate"] = [(row["residual"] * row["scale"], row["force"] * force) for row in kept]
+    parts["estimate"] = [(row["residual"], row["scale"], row["force"] * force) for row in kept]
     return {**job, **parts}
 
 
@@ -285,16 +286,43 @@ def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
 
 
 def estimate(groups: Sequence[Sequence[Sequence[float]]]) -> dict[str, float]:
-    """error ≤ A × residual × mean contact force: A from every second increment, and how often it then holds for the others."""
-    found = np.array([row for group in groups for row in group]).reshape(-1, 2)
-    learnt, tried = found[::2], found[1::2]
-    amount = factor(learnt[:, 0], learnt[:, 1], SHARE)
+    """error ≤ A × mean contact force × residual^p: A and p from every second increment, tried on the others.
+
+    ``groups`` are (residual, mean contact force [k R], error of the force [k R]) of each start. A is such that the estimate is
+    right in the share ``SHARE``; of all such pairs the one whose estimates are least (geometric mean) is taken. p is 1 where
+    errors are in proportion to the residual, less where grains find another balance at every tolerance.
+    """
+    found = np.array([row for group in groups for row in group]).reshape(-1, 3)
+    residual, force, error = found.T
+    fits = []
+    for power in POWERS:
+        scale = force * residual**power
+        amount = factor(scale[::2], error[::2], SHARE)
+        size = amount * float(np.exp(np.mean(np.log(scale)))) if len(scale) else math.nan
+        fits.append((size, -power, amount))
+    _, negative, amount = min(fits)
+    power = -negative
+    scale = force * residual**power
     return {
         "factor": amount,
-        "coverage": coverage(tried[:, 0], tried[:, 1], amount),
-        "increments": len(tried),
-        "median_ratio": float(np.median(found[:, 1] / found[:, 0])) if len(found) else math.nan,
+        "power": power,
+        "coverage": coverage(scale[1::2], error[1::2], amount),
+        "increments": len(scale[1::2]),
+        "median_ratio": float(np.median(error / scale)) if len(found) else math.nan,
     }
+
+
+def _estimate(jobs: Sequence[Job]) -> dict[str, float]:
+    """The calibration, and what the estimate comes to at the scene's own tolerance, relative to the force."""
+    found = estimate([job["estimate"] for job in jobs])
+    contact = np.array([row[1] for job in jobs for row in job["estimate"]])
+    force = float(np.mean([job["scales"]["force"] for job in jobs]))
+    tolerance = float(jobs[0]["tolerance"])
+    found["typical"] = math.nan
+    if len(contact) and force > 0.0:
+        per_force = float(contact.mean()) / force
+        found["typical"] = found["factor"] * per_force * tolerance ** found["power"]
+    return found
 
 
 def beyond(groups: Sequence[Sequence[Mapping[str, float]]]) -> list[dict[str, float]]:

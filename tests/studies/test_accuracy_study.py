@@ -116,6 +116,7 @@ def test_summary_and_report(row_job: dict[str, Any]) -> None:
     table = tomllib.loads(as_table({"grain_row": summary}))["grain_row"]
     assert table["statement"] == statement(summary)
     assert table["error_factor"] > 0.0
+    assert 0.0 < table["error_power"] <= 1.0
 
 
 def test_a_tight_walk_that_leaves_the_reference_ends_the_errors(row_job: dict[str, Any]) -> None:
@@ -170,11 +171,21 @@ def test_model_error_is_against_the_extrapolated_limit() -> None:
 
 
 def test_estimate_is_tried_on_increments_that_it_has_not_seen() -> None:
-    pairs = [[[1.0, 2.0], [1.0, 3.0], [2.0, 4.0], [2.0, 1.0]]]
-    found = estimate(pairs)
-    assert found["factor"] == 2.0
+    rows = [[[0.1, 2.0, 0.2], [0.1, 2.0, 0.3], [0.01, 2.0, 0.02], [0.01, 2.0, 0.01]]]
+    found = estimate(rows)
+    assert found["power"] == 1.0
+    assert found["factor"] == pytest.approx(1.0)
     assert found["coverage"] == 0.5
     assert found["increments"] == 2
+
+
+def test_estimate_falls_as_slowly_as_errors_do() -> None:
+    residual = np.logspace(-1, -5, 9)
+    rows = [[r, 0.5, 0.5 * 0.3 * r**0.5] for r in residual]
+    found = estimate([rows])
+    assert found["power"] == pytest.approx(0.5)
+    assert found["factor"] == pytest.approx(0.3)
+    assert found["coverage"] == 1.0
 
 
 @pytest.mark.parametrize(
