@@ -178,12 +178,19 @@ def from_data(data: dict[str, Any]) -> Command:
             if not isinstance(value, bool):
                 raise InputError(f"command {data['command']!r}: {name} must be true or false")
         elif name == "value":
-            if not isinstance(value, (bool, int, float, str)):
-                raise InputError("command 'change': value must be a number, a word or a switch")
+            if not (isinstance(value, (bool, str)) or _finite(value)):
+                raise InputError(
+                    "command 'change': value must be a finite number, a word or a switch"
+                )
         elif not isinstance(value, str):
             raise InputError(f"command {data['command']!r}: {name} must be a word")
     command: Command = kind(**given)
     return command
+
+
+def check(command: Command) -> None:
+    """Raises InputError for a command that a log could not carry, such as one with numbers that are not finite."""
+    from_data(to_data(command))
 
 
 def _line(value: object) -> tuple[tuple[float, float], ...]:

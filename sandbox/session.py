@@ -29,6 +29,7 @@ from sandbox.commands import (
     Reset,
     Retype,
     Undo,
+    check,
 )
 from sandbox.frame import Frame
 from sandbox.history import History
@@ -156,6 +157,7 @@ class Session:
         return travelled
 
     def _apply(self, command: Command) -> None:
+        check(command)
         before = self._moment() if isinstance(command, UNDOABLE) else None
         self._do(command)
         if before is not None:

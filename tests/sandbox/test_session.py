@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,7 +10,17 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Command, Grab, Move, Protocol, Release, Reset
+from sandbox.commands import (
+    Change,
+    Command,
+    DrawWall,
+    Grab,
+    Move,
+    Place,
+    Protocol,
+    Release,
+    Reset,
+)
 from sandbox.log import read_log
 from sandbox.replay import replay
 from sandbox.session import Session
@@ -130,6 +141,28 @@ def test_bad_commands_change_nothing_and_say_why() -> None:
     assert session.state_hash() == start
     assert "grains must lie between" in session.frame().notices[0]
     assert session.log().commands == ()
+
+
+@pytest.mark.parametrize("nonsense", [math.nan, math.inf, -math.inf, 10**400])
+def test_numbers_that_are_none_are_refused_and_never_logged(
+    nonsense: float, tmp_path: Path
+) -> None:
+    session = intruder()
+    start = session.state_hash()
+    drag(
+        session,
+        Grab("intruder"),
+        Move("intruder", nonsense, 1.0),
+        Move("intruder", 1.0, nonsense),
+        Change("friction", nonsense),
+        Place(nonsense, 1.0, "regular"),
+        DrawWall(((nonsense, 1.0), (2.0, 2.0))),
+    )
+    run(session, 3)
+    assert session.state_hash() == start
+    assert "finite" in session.frame().notices[0]
+    session.write_log(str(tmp_path / "run.jsonl"))
+    assert read_log(tmp_path / "run.jsonl").commands == ((0, Grab("intruder")),)
 
 
 def test_requests_are_checked_before_anything_is_built() -> None:
