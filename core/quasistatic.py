@@ -183,9 +183,19 @@ class Quasistatic:
         """Move each named body one step towards its target and start to relax. With no targets: relax where things stand.
 
         ``box`` is a target too: the periodic box goes there by steps of its sides, and the grains with it, affinely.
+        Raises InputError, and nothing has moved, for what cannot be: a box too small for its grains, a body that stands fast.
         """
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
+        state, cell, placement = self.packing.state.copy(), self.packing.box, self.world.placement()
+        try:
+            self._begin(targets, box)
+        except InputError:
+            self.packing.state[:], self.packing.box = state, cell
+            self.world.place(placement)
+            raise
+
+    def _begin(self, targets: dict[str, Point], box: PeriodicBox | None) -> None:
         self._moved, self._stopped = {}, {}
         if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
             self._contacts = None

@@ -22,6 +22,7 @@ from sandbox.history import Event, History
 from sandbox.reading import BOX, follow_drive, read_off, tell_what_stopped
 from sandbox.snapshot import View, take
 from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.text import message
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
@@ -133,7 +134,11 @@ class Run(Driven):
             if not targets and self._still:
                 return False
             box = targets.pop(BOX, None)
-            self.engine.begin(targets, None if box is None else self._cell(box))
+            try:
+                self.engine.begin(targets, None if box is None else self._cell(box))
+            except InputError as error:
+                self._give_up(error)
+                return False
         increment = self.engine.relax(max_iterations)
         if increment is None:
             return False
@@ -157,6 +162,13 @@ class Run(Driven):
         self._remark(None if left else before, earlier, left)
         self._keep()
         return True
+
+    def _give_up(self, error: InputError) -> None:
+        """An increment that cannot be begun: say why, and wait for the hand to ask for something else."""
+        course = self._course
+        course.blocked.update(course.targets)
+        course.script, course.moving, course.touched = None, False, 0
+        self.say(message(error))
 
     def _too_tight(self, increment: Increment) -> bool:
         """After an edit: if the grains cannot be relaxed, back to before it. True then."""

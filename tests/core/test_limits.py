@@ -61,6 +61,20 @@ def test_a_grain_that_is_in_a_wall_already_is_let_out() -> None:
     assert done.report.reason not in FAILED
 
 
+def test_an_increment_that_cannot_be_begun_moves_nothing() -> None:
+    packing = Packing([1.0, 3.0], [1.0, 3.0], box=PeriodicBox(4.7, 4.7))
+    engine = Quasistatic(packing, RigidWorld(), Settings(skin=0.1))
+    with pytest.raises(InputError, match="box is too small"):
+        for _ in range(20):
+            state, box = packing.state.copy(), packing.box
+            engine.begin({}, PeriodicBox(4.0, 4.0))
+            assert engine.relax(100_000) is not None
+    assert np.array_equal(packing.state, state)
+    assert packing.box == box
+    engine.begin({}, PeriodicBox(5.0, 5.0))
+    assert engine.relax(100_000) is not None
+
+
 @pytest.mark.parametrize("unit", [1e-4, 1.0, 1e4])
 def test_units_of_length_make_no_difference(unit: float) -> None:
     """Energy goes with the square of length, and the residual is relative."""

@@ -165,6 +165,28 @@ def test_numbers_that_are_none_are_refused_and_never_logged(
     assert read_log(tmp_path / "run.jsonl").commands == ((0, Grab("intruder")),)
 
 
+def test_an_increment_that_cannot_be_begun_is_told_and_waits_for_the_hand(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    session = intruder()
+    x, y = session.run.setup.world["intruder"].position
+    drag(session, Protocol(True))
+    run(session, 2)
+
+    def refuse(*_: object) -> None:
+        raise InputError("it cannot be done")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(session.run.engine, "_begin", refuse)
+        before = session.state_hash()
+        assert not session.advance()
+        assert session.idle
+        assert session.state_hash() == before
+        assert "it cannot be done" in session.frame().notices
+    drag(session, Grab("intruder"), Move("intruder", x + 5.0, y))
+    assert run(session, 2) == 2
+
+
 def test_requests_are_checked_before_anything_is_built() -> None:
     with pytest.raises(InputError, match="did you mean hopper"):
         Session("hoper")
