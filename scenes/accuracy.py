@@ -24,7 +24,7 @@ class Accuracy:
     def force_error(self, residual: float, contact_force: float) -> float:
         """Estimated error of the force on the handle [k R] that an unfinished relaxation leaves.
 
-        A × mean contact force × residual^p: in 95 % of the increments of the study the error was below that, at any tolerance.
+        A × mean contact force × residual^p: in 90 % of the increments of the study the error was below that, at any tolerance.
         """
         return self.error_factor * contact_force * float(residual**self.error_power)
 

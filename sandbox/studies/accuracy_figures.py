@@ -35,6 +35,7 @@ MARKS = "osD^vx+*<>"
 SIZE = (10.4, 4.3)  # [inch]
 RESOLUTION = 100  # [dots an inch]
 FRONT = "#BBBBBB"
+LEGEND: Any = {"frameon": True, "framealpha": 0.85, "edgecolor": "none"}  # readable over lines
 
 
 def draw_scene(name: str, title: str, summary: Summary, path: Path) -> None:
@@ -94,14 +95,18 @@ def _logarithmic(axes: Any, x: str, y: str) -> None:
     plain_numbers(axes.xaxis, *axes.get_xlim())
     axes.set_xlabel(x)
     axes.set_ylabel(y)
-    axes.legend()
+    axes.legend(**LEGEND)
 
 
 def _work(axes: Any, summary: Summary) -> None:
-    _line(axes, _points(summary["front"]), color=FRONT, linewidth=7, label="front", zorder=1)
+    shown = summary["shown"]
+    _line(axes, _points(shown["front"]), color=FRONT, linewidth=7, label="front", zorder=1)
     own = float(summary["increment"])
+    path = summary["against"] == "path"
     for step, (colour, mark) in INCREMENTS.items():
-        dots = [dot for dot in summary["dots"] if dot["step"] == step]
+        if not path and step != 1.0:
+            continue  # each against its own increments: costs are not to be compared
+        dots = [dot for dot in shown["dots"] if dot["step"] == step]
         label = f"increments of {own * step:g} R"
         _line(axes, _points(dots), color=colour, marker=mark, linewidth=1.2, label=label)
     for name, (colour, mark) in PEERS.items():
@@ -110,7 +115,7 @@ def _work(axes: Any, summary: Summary) -> None:
         _line(axes, _points(dots), label=name, **style)
     _line(
         axes,
-        _points([summary["default"]]),
+        _points([shown["default"]]),
         color="#CC79A7",
         marker="*",
         markersize=17,
@@ -119,7 +124,7 @@ def _work(axes: Any, summary: Summary) -> None:
         label="default",
         zorder=5,
     )
-    axes.set_title("work and precision")
+    axes.set_title("work and precision" + ("" if path else " of the relaxation alone"))
     _logarithmic(axes, "processor time of an increment's way [ms]", "error of the force, relative")
 
 
@@ -166,7 +171,7 @@ def _model_error(axes: Any, scenes: Mapping[str, Mapping[str, Any]]) -> None:
     axes.axvline(50.0, color=FRONT, linestyle=":")
     axes.set_title("model error of the force against C → ∞")
     _logarithmic(axes, "C [k]", "error, relative")
-    axes.legend(fontsize=7)
+    axes.legend(fontsize=7, loc="upper right", **LEGEND)
 
 
 def _cost(axes: Any, scenes: Mapping[str, Mapping[str, Any]]) -> None:

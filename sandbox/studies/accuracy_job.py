@@ -212,7 +212,9 @@ class Bench:
 
     def _friction(self) -> Iterator[dict[str, Any]]:
         """The lag of friction: increments, and relaxations with the friction frozen anew, at a tight tolerance."""
-        for repeats in (0, *self.sweeps.repeats):
+        # With drag, an increment is a step of time: repeated, it would be another one.
+        again = self.sweeps.repeats if self.start.setup.drag == 0.0 else ()
+        for repeats in (0, *again):
             for step in (1.0, *self.sweeps.steps):
                 yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)
 

@@ -24,8 +24,8 @@ from sandbox.studies.accuracy_protocols import APART
 Job = Mapping[str, Any]
 
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
-SHARE = 0.95  # of the increments in which the estimate is to be above the error
-PLACES = 3  # of the scene's own increments before bifurcations that make errors along the path worth a name
+SHARE = 0.9  # of the increments in which the estimate is to be above the error
+MOST = 0.5  # of the scene's own increments must end before a bifurcation for errors along the path to be worth a name
 POWERS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)  # of the residual in the estimate, to choose from
 LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
 TIGHT = 1e-6  # a tolerance up to which walks say where paths part
@@ -91,7 +91,8 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     if "contact" in first:
         return _contact(first)
     ends = [bifurcation(job) for job in jobs]
-    path = sum(_default_places(job, end) for job, end in zip(jobs, ends, strict=True)) >= PLACES
+    places = sum(_default_places(job, end) for job, end in zip(jobs, ends, strict=True))
+    path = places > MOST * float(first["length"]) * len(jobs)
     jobs = [
         along_path(job, end) if path else own_increments(job)
         for job, end in zip(jobs, ends, strict=True)
@@ -102,7 +103,10 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     peers = {
         name: dots([job["peers"][name] for job in compared], length) for name in first["peers"]
     }
-    best = _front(grid)
+    # Peers are held against this program from the same starts, with the same increments.
+    shown = dots([job["walks"] for job in compared], length)
+    best = _front(shown if path else [dot for dot in shown if dot.step == 1.0])
+    ours = _front([dot for dot in shown if dot.step == 1.0])
     default = default_dot(grid, first["tolerance"])
     summary: dict[str, Any] = {
         "grains": first["grains"],
@@ -116,13 +120,17 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "reference": _reference(jobs),
         "check": first["check"],
         "dots": [asdict(dot) for dot in grid],
-        "front": [asdict(dot) for dot in best],
         "default": asdict(default),
+        "shown": {
+            "dots": [asdict(dot) for dot in shown],
+            "front": [asdict(dot) for dot in best],
+            "default": asdict(default_dot(shown, first["tolerance"])),
+        },
         "frames": default.increment / FRAME,
         "sliced": all(job["sliced"] for job in jobs),
         "budgets": [asdict(dot) for dot in dots([job["budgets"] for job in compared], length)],
         "peers": {name: [asdict(dot) for dot in found] for name, found in peers.items()},
-        "lead": {name: _lead(best, found) for name, found in peers.items()},
+        "lead": {name: _lead(ours, found) for name, found in peers.items()},
         "stiffness": stiffness([job["stiffness"] for job in compared]),
         "overlap": _overlap(compared),
         "estimate": _estimate(jobs),

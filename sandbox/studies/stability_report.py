@@ -20,7 +20,16 @@ from sandbox.studies.stability_case import FAILS, HOLDS, NOT_SOLVED, Outcome
 
 FORMAT, VERSION = "auxetic-sandbox stability", 1
 KINDS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED}
-SHOWN = (0.0, 0.8, 0.99, 0.9999)  # |ν| of the lines
+SHOWN = (0.0, 0.8, 0.9999)  # |ν| of the lines
+
+# What an outcome means, for a reader of the list.
+WHY = {
+    "iteration limit": "the bound came first. Contacts of stiffness C know a force to about C · 1e-15 k R, as lengths of some R are \
+known to 1e-15: a finer tolerance is out of reach, and the work grows as √C on the way there",
+    "collapsed": "a hand of up to 40 k R squeezed a grain until b ≤ 0; the increment was taken back, the hand stopped and told",
+    "sunk": "a hand of up to 40 k R, with friction of 10 more than that, overpowered contacts of stiffness 50 k: a grain was \
+pressed into a wall or through its face; the increment was taken back, the hand stopped and told",
+}
 
 INTRODUCTION = """# Numerical stability: {cases} hard cases
 
@@ -63,6 +72,8 @@ def as_markdown(outcomes: Sequence[Outcome], about: Mapping[str, Any]) -> str:
         chosen = [outcome for outcome in outcomes if outcome.verdict == verdict]
         if chosen:
             lines += [f"## {title}", ""]
+            endings = {o.ended for o in chosen} & set(WHY)
+            lines += [f"`{ending}`: {WHY[ending]}.\n" for ending in sorted(endings)]
             lines += [f"- {_cell(o.group)}: {_cell(o.name)}: {_reason(o)}" for o in chosen] + [""]
     lines += ["## All cases", ""]
     for group in dict.fromkeys(outcome.group for outcome in outcomes):
@@ -138,7 +149,7 @@ def _map(placed: Sequence[Outcome]) -> Any:
     table = _by_place(placed)
     most = max(_each(outcome) for outcome in placed)
     least = min(_each(outcome) for outcome in placed)
-    canvas = _canvas((10.5, 4.6))
+    canvas = _canvas((13.0, 4.6))
     canvas.suptitle("Force evaluations an increment, 40 grains squeezed by 8 %")
     axes = canvas.subplots(1, len(KINDS))
     image = None
@@ -159,14 +170,14 @@ def _map(placed: Sequence[Outcome]) -> Any:
                 f"{_short(values[row, column])}{sign}",
                 ha="center",
                 va="center",
-                fontsize=8.0,
+                fontsize=9.0,
                 color="white" if dark else "black",
             )
         norm = LogNorm(least, most)
         image = panel.imshow(values, origin="lower", aspect="auto", cmap="viridis_r", norm=norm)
         mark = {"regular": "", "auxetic": "−", "mixed": "±"}[kind]
         panel.set_yticks(range(len(ratios)), [f"{mark}{nu:g}" for nu in ratios])
-        panel.set_xticks(range(len(stiffnesses)), [_short(c) for c in stiffnesses])
+        panel.set_xticks(range(len(stiffnesses)), [_power(c) for c in stiffnesses])
         panel.set_title(kind)
         panel.set_xlabel("contact stiffness C [k]")
         panel.grid(False)
@@ -178,11 +189,11 @@ def _map(placed: Sequence[Outcome]) -> Any:
 def _lines(placed: Sequence[Outcome]) -> Any:
     """Iterations of an increment against contact stiffness, and the square root of it."""
     table = _by_place(placed)
-    canvas = _canvas((6.4, 4.4))
+    canvas = _canvas((8.2, 4.4))
     axes = canvas.add_subplot()
     every = []
     for kind, colour in KINDS.items():
-        for nu, style in zip(SHOWN, ("-", "--", "-.", ":"), strict=True):
+        for nu, style in zip(SHOWN, (":", "-", "--"), strict=True):
             points = sorted(
                 (c, _each(o)) for (k, v, c), o in table.items() if k == kind and abs(v) == nu
             )
@@ -201,8 +212,8 @@ def _lines(placed: Sequence[Outcome]) -> Any:
     axes.set_yscale("log")
     axes.set_xlabel("contact stiffness C [k]")
     axes.set_ylabel("force evaluations an increment")
-    axes.set_title("The work grows as √C, whatever Poisson's ratio")
-    axes.legend(fontsize=8.0)
+    axes.set_title("The work grows as √C")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return canvas
 
 
@@ -215,11 +226,16 @@ def _each(outcome: Outcome) -> float:
 
 
 def _short(value: float) -> str:
-    """``830``, ``12k``, ``1.2M``."""
-    for size, letter in ((1e6, "M"), (1e3, "k")):
-        if value >= size:
-            return f"{value / size:.2g}{letter}"
-    return f"{value:.3g}"
+    """``830``, ``1.2k``, ``12k``, ``120k``."""
+    if value < 1000.0:
+        return f"{value:.0f}"
+    return f"{value / 1000.0:.1f}k" if value < 9950.0 else f"{value / 1000.0:.0f}k"
+
+
+def _power(value: float) -> str:
+    """``50``, or a power of ten as such."""
+    exponent = round(math.log10(value))
+    return f"$10^{exponent}$" if exponent > 2 and value == 10.0**exponent else f"{value:g}"
 
 
 def _canvas(size: tuple[float, float]) -> Any:

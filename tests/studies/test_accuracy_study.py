@@ -102,8 +102,8 @@ def test_reference_is_confirmed_by_other_means(row_job: dict[str, Any]) -> None:
 def test_summary_and_report(row_job: dict[str, Any]) -> None:
     summary = summarise([row_job, row_job])
     assert summary["default"]["step"] == 1.0
-    costs = [dot["solving"] for dot in summary["front"]]
-    errors = [dot["force"] for dot in summary["front"]]
+    costs = [dot["solving"] for dot in summary["shown"]["front"]]
+    errors = [dot["force"] for dot in summary["shown"]["front"]]
     assert costs == sorted(costs)
     assert errors == sorted(errors, reverse=True)
     assert summary["stiffness"]["error_power"] == pytest.approx(-1.0, abs=0.3)
