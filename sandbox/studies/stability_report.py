@@ -24,8 +24,8 @@ SHOWN = (0.0, 0.8, 0.9999)  # |ν| of the lines
 
 # What an outcome means, for a reader of the list.
 WHY = {
-    "iteration limit": "the bound came first. Contacts of stiffness C know a force to about C · 1e-15 k R, as lengths of some R are \
-known to 1e-15: a finer tolerance is out of reach, and the work grows as √C on the way there",
+    "iteration limit": "the bound came first. Contacts of stiffness C know a force to about C · 1e-15 k R, as lengths of some R \
+are known to 1e-15: a finer tolerance is out of reach, and the work grows as √C on the way there",
     "collapsed": "a hand of up to 40 k R squeezed a grain until b ≤ 0; the increment was taken back, the hand stopped and told",
     "sunk": "a hand of up to 40 k R, with friction of 10 more than that, overpowered contacts of stiffness 50 k: a grain was \
 pressed into a wall or through its face; the increment was taken back, the hand stopped and told",
