@@ -69,6 +69,7 @@ def study(
         kept = _read(folder, job)
         if kept is not None:
             found[job] = kept
+    before = len(found)
     try:
         _run([job for job in plan if job not in found], folder, jobs, found, failures, measure)
     except KeyboardInterrupt:
@@ -81,6 +82,7 @@ def study(
     about = {
         "quick": quick,
         "jobs": jobs,
+        "finished_before": before,
         "seconds": round(time.perf_counter() - began, 1),
         **machine(),
     }
