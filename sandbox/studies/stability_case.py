@@ -60,6 +60,8 @@ class Outcome:
     closest: str = ""  # what came nearest to not holding
     share: float = 0.0  # of what was allowed there
     broken: tuple[str, ...] = ()
+    guarded: int = 0  # increments after which the guard of the area acted
+    flattest: float = 1.0  # least b/a of any grain after any increment
     place: tuple[str, float, float] | None = None
 
     def as_data(self) -> dict[str, Any]:
@@ -122,5 +124,7 @@ def carry_out(
         "" if nearest is None else nearest.name,
         0.0 if nearest is None else fraction_of_allowed(nearest),
         tuple(watch.broken.values()),
+        watch.guarded,
+        watch.flattest,
         case.place,
     )

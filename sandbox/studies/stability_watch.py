@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.elasticity import GUARD_AREA
 from core.errors import InputError
 from core.generate import inside
 from core.packing import Packing, PeriodicBox
@@ -64,6 +65,8 @@ class Watch:
         self.reasons: Counter[str] = Counter()
         self.worst: dict[str, Look] = {}
         self.broken: dict[str, str] = {}
+        self.guarded = 0  # increments after which the guard of the area acted on some grain
+        self.flattest = 1.0  # least b/a of any grain
         self._stopping = stopping
         self._began = time.process_time()
         self._limit = seconds
@@ -154,6 +157,9 @@ class Watch:
         self.reasons[str(increment.report.reason)] += 1
 
     def _look(self, engine: Quasistatic, increment: Increment, outline: list[Point] | None) -> None:
+        a, b = engine.packing.semi_axes
+        self.guarded += bool(np.any(a * b < GUARD_AREA * engine.packing.rest_radius**2))
+        self.flattest = min(self.flattest, float(np.min(b / a, initial=1.0)))
         for look in (
             *soundness(engine.packing, engine.world, outline),
             *reported(increment),
