@@ -136,9 +136,9 @@ def test_a_lesson(person: Person, twin: Desk) -> None:
     assert errors == ""
 
     (film,) = person.folder.glob("*.mp4")
-    with imageio.get_reader(film) as reader:
-        assert reader.count_frames() > 30
-        assert reader.get_data(10).shape == (HEIGHT, WIDTH, 3)
+    frames = imageio.mimread(film, memtest=False)
+    assert len(frames) > 30
+    assert frames[10].shape == (HEIGHT, WIDTH, 3)
     done = [
         line
         for line in map(json.loads, log.read_text(encoding="utf-8").splitlines())
