@@ -295,9 +295,9 @@ def _play(options: argparse.Namespace) -> int:
             raise InputError("--compare: open the scene file without it, then press C")
     environment.require_pygame_ce()
     environment.require_display()
-    from sandbox.views import window
+    from sandbox.window import app
 
-    return window.run(
+    return app.run(
         scene,
         _packing(options),
         _seed(options),

@@ -127,7 +127,8 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Run in an empty folder, with everything that takes long replaced."""
     from sandbox import environment
     from sandbox.studies import accuracy, bench, paper, stability
-    from sandbox.views import record, record_side_by_side, window
+    from sandbox.views import record, record_side_by_side
+    from sandbox.window import app
 
     folder = tmp_path_factory.mktemp("words")
     for name in ("empty.toml", "empty.jsonl"):
@@ -137,7 +138,7 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         patch.chdir(folder)
         patch.setattr(environment, "require_display", lambda: None)
         for module, name in (
-            (window, "run"),
+            (app, "run"),
             (record, "record"),
             (record, "repeat"),
             (record_side_by_side, "record_side_by_side"),

@@ -16,7 +16,7 @@ from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
 from sandbox.draw.tour_card import TourPage, card_layout, draw_tour_card
 from sandbox.draw.views import VIEWS
-from sandbox.views.window_menu import Menu
+from sandbox.window.menu import Menu
 from tests.draw.frames import hopper_frame, intruder_frame
 
 SIZES = [(1280, 720), (1920, 1080)]

@@ -1,0 +1,101 @@
+"""The picture of the runs in the window: which frame is where, what is said to each, what lights up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import pygame
+
+from sandbox.draw import words
+from sandbox.draw.camera import Camera
+from sandbox.draw.flashes import Flashes
+from sandbox.draw.overlays import Hand
+from sandbox.draw.render import Renderer, kept_curve
+from sandbox.frame import Frame
+from sandbox.window.run import Run
+from sandbox.window.solver_thread import Snapshot
+
+Pane = tuple[Frame, Camera, pygame.Rect]
+
+
+class Picture:
+    """Draws what the solvers have published."""
+
+    def __init__(self, run: Run, renderer: Renderer) -> None:
+        self._run, self._renderer = run, renderer
+        self._flashes = Flashes()
+        self._lit = False
+        self.events: tuple[str, ...] = ()  # kinds of those that were new in the latest picture
+
+    @property
+    def moving(self) -> bool:
+        """Does the picture change by itself?"""
+        busy = any(seen.phase in ("building", "catching up") for seen in self._run.snapshots)
+        return busy or self._lit
+
+    @property
+    def serials(self) -> tuple[int, ...]:
+        """Changes when there is something new to show."""
+        return tuple(seen.serial for seen in self._run.snapshots)
+
+    def forget(self) -> None:
+        """Other runs begin."""
+        self._flashes.forget()
+
+    def panes(self) -> tuple[Pane, ...]:
+        """What is drawn where, from the left."""
+        places = zip(
+            self._run.snapshots, self._renderer.cameras, self._renderer.bodies, strict=False
+        )
+        return tuple(
+            (seen.frame, camera, rect) for seen, camera, rect in places if seen.frame is not None
+        )
+
+    def pane_at(self, place: tuple[int, int]) -> int | None:
+        """Which of them is there."""
+        for index, (_, _, rect) in enumerate(self.panes()):
+            if rect.collidepoint(place):
+                return index
+        return None
+
+    def draw(self, *, hand: Hand, rate: str, notices: Sequence[str], now: float) -> None:
+        """All panes; at least one of them must have a frame."""
+        snapshots = self._run.snapshots
+        frames = [seen.frame for seen in snapshots]
+        lit = self._flashes.follow(frames, now)
+        self._lit, self.events = bool(lit), self._flashes.new
+        first = next(frame for frame in frames if frame is not None)
+        several = len(snapshots) > 1
+        self._renderer.draw(
+            frames,
+            hand=hand,
+            rate=rate,
+            paused=self._run.paused,
+            notices=notices,
+            told=[_told(seen) for seen in snapshots] if several else (),
+            kept=[kept_curve(kept) for kept in self._run.curves.shown(first)],
+            flashes=lit,
+        )
+
+
+def progress_of(snapshot: Snapshot) -> str:
+    """What is being built or caught up with; empty when nothing is."""
+    if snapshot.phase == "catching up":
+        text = words.CATCHING_UP
+    elif snapshot.phase == "building":
+        text = words.say(snapshot.text) or words.SPLASH_STEP
+    else:
+        return ""
+    text = text[:1].upper() + text[1:]
+    if math.isfinite(snapshot.fraction):
+        text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
+    return text
+
+
+def _told(snapshot: Snapshot) -> tuple[str, ...]:
+    """What the window says in a pane of its own."""
+    if snapshot.phase == "failed":
+        return (words.PANE_FAILED.format(error=words.say(snapshot.error)),)
+    text = progress_of(snapshot)
+    return (text,) if text else ()

@@ -1,0 +1,113 @@
+"""What the menu leads to: what was left unfinished, files, and what cannot be done."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pygame
+import pytest
+
+from sandbox import autosave, language
+from sandbox.draw.menu_layout import DISCARD, START, TAKE_UP
+from sandbox.window.begin import ago
+from sandbox.window.menu import Choice
+from tests.window.desk import Desk
+
+
+class LeftBehind:
+    """As an autosave of a program that is gone."""
+
+    scene, grains = "hopper", 150
+
+    def __init__(self, minutes: float) -> None:
+        self.saved = time.time() - 60.0 * minutes
+        self.removed = False
+
+    def remove(self) -> None:
+        self.removed = True
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+    yield
+    language.use(language.SOURCE)
+
+
+@pytest.fixture
+def left(monkeypatch: pytest.MonkeyPatch) -> list[LeftBehind]:
+    found = [LeftBehind(12.0), LeftBehind(300.0)]
+    monkeypatch.setattr(autosave, "find", lambda: tuple(found))
+    return found
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    place = Desk((1000, 700))
+    yield place
+    place.app.close()
+
+
+def menu_open(desk: Desk) -> None:
+    desk.app.open_menu()
+    desk.until(lambda: not desk.app._splash)
+    desk.app.tick()
+
+
+def test_what_was_left_is_offered_first_and_taken_up(
+    desk: Desk, left: list[LeftBehind], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    taken: list[Any] = []
+    monkeypatch.setattr(desk.app, "take_up", taken.append)
+    menu_open(desk)
+    menu = desk.app.menu
+    assert menu.chosen == TAKE_UP
+    assert menu.resume is not None
+    assert menu.resume() == "Left unfinished: Hopper, 150 grains, 12 minutes ago."
+    language.use("de")
+    assert menu.resume() == "Nicht zu Ende gebracht: Trichter, 150 Körner, vor 12 Minuten."
+    desk.key(pygame.K_RETURN)
+    assert taken == [left[0]]
+    assert not left[0].removed
+
+
+def test_what_was_left_can_be_discarded_one_by_one(desk: Desk, left: list[LeftBehind]) -> None:
+    menu_open(desk)
+    for one in left:
+        desk.app.beginnings.take(Choice(what=DISCARD))
+        assert one.removed
+    assert desk.app.menu.resume is None
+    desk.app.beginnings.take(Choice(what=DISCARD))  # a second click too many
+    menu_open(desk)  # it is not looked for again
+    assert desk.app.menu.resume is None
+
+
+def test_without_anything_left_the_menu_begins_with_where_to_start(desk: Desk) -> None:
+    menu_open(desk)
+    assert (desk.app.menu.resume, desk.app.menu.chosen) == (None, START)
+
+
+def test_a_file_that_cannot_be_read_is_said_and_the_menu_stays(desk: Desk, tmp_path: Path) -> None:
+    menu_open(desk)
+    desk.app.beginnings.take(Choice(file=tmp_path / "gone.toml"))
+    assert desk.page() == "menu"
+    assert "gone.toml" in desk.app.notices.latest
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (5.0, "less than a minute ago"),
+        (70.0, "a minute ago"),
+        (600.0, "10 minutes ago"),
+        (4000.0, "an hour ago"),
+        (7200.0, "2 hours ago"),
+        (300000.0, "3 days ago"),
+    ],
+)
+def test_how_long_ago(seconds: float, said: str) -> None:
+    assert ago(seconds) == said

@@ -1,0 +1,143 @@
+"""The runs of the window: what was made is saved, opened, put side by side, and found again after a crash."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from core.errors import InputError
+from sandbox.autosave import Autosave, find
+from sandbox.commands import Change, DrawWall, Place, Protocol, Undo
+from sandbox.frame import Frame
+from sandbox.scene_file import read_scene, write_scene
+from sandbox.window.run import Run
+from tests.sandbox.test_editing import built, do
+
+PATIENCE = 60.0  # [s]
+WALL = DrawWall(((20.0, 3.0), (24.0, 4.0)))
+
+
+def wait(run: Run, condition: Callable[[Frame], bool], pane: int = 0) -> Frame:
+    """Tick as the window does until the picture is like that."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        run.tick()
+        snapshot = run.snapshots[pane] if pane < len(run.snapshots) else None
+        if snapshot is not None:
+            assert snapshot.phase != "failed", snapshot.error
+            frame = snapshot.frame if snapshot.phase == "running" else None
+            if frame is not None and condition(frame):
+                return frame
+        time.sleep(0.005)
+    raise AssertionError("it did not come to that")
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Iterator[Run]:
+    one = Run("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
+    yield one
+    one.close(None)
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    session = built(grains=0)
+    do(session, WALL, Place(10.0, 4.0, "regular"), Place(13.0, 4.0, "auxetic"))
+    write_scene(tmp_path / "made.toml", session)
+    return tmp_path / "made.toml"
+
+
+def test_what_was_made_is_saved_and_opened(run: Run, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="nothing to save"):
+        run.save(tmp_path / "it.toml")
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    run.send(Place(10.0, 4.0, "regular"))
+    run.send(WALL)
+    wait(run, lambda frame: frame.grains == 1 and len(frame.bodies) == 3)
+    run.save(tmp_path / "it.toml")
+    with pytest.raises(InputError, match="nowhere"):
+        run.save(tmp_path / "nowhere" / "it.toml")
+    run.start("workshop", {"grains": 5})
+    wait(run, lambda frame: frame.grains == 5)
+    run.open(tmp_path / "it.toml")
+    wait(run, lambda frame: frame.grains == 1 and len(frame.bodies) == 3)
+    with pytest.raises(InputError, match="no such file"):
+        run.open(tmp_path / "none.toml")
+    wait(run, lambda frame: frame.grains == 1)
+
+
+def test_while_the_run_is_held_things_are_made_and_the_drive_stays(run: Run) -> None:
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    run.send(Protocol(True))
+    wait(run, lambda frame: frame.increment > 3)
+    run.pause_or_go_on()
+    time.sleep(0.1)
+    before = run.snapshot.frame
+    assert before is not None
+    run.send(Place(20.0, 4.0, "regular"))
+    frame = wait(run, lambda frame: frame.grains == 1)
+    frame = wait(run, lambda frame: not frame.busy)
+    assert frame.stroke == before.stroke
+    assert frame.increment == before.increment + 1
+    run.send(Undo())
+    wait(run, lambda frame: frame.grains == 0)
+
+
+def test_refusals_are_counted_for_the_window(run: Run) -> None:
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    run.send(Place(-9.0, 4.0, "regular"))
+    assert "inside" in wait(run, lambda frame: frame.refusals == 1).refusal
+
+
+def test_what_a_file_has_is_put_side_by_side(run: Run, file: Path) -> None:
+    run.open(file)
+    wait(run, lambda frame: frame.grains == 2)
+    run.compare()
+    assert len(run.snapshots) == 3
+    regular, mixed, auxetic = (wait(run, lambda frame: frame.grains == 2, k) for k in range(3))
+    assert not regular.auxetic.any()
+    assert mixed.auxetic.tolist() == [False, True]
+    assert auxetic.auxetic.all()
+    for frame in (regular, mixed, auxetic):
+        assert len(frame.bodies) == 3
+    run.send(Place(16.0, 4.0, "regular"))
+    for k in range(3):
+        wait(run, lambda frame: frame.grains == 3, k)
+
+
+def test_a_new_start_leaves_the_file_behind(run: Run, file: Path) -> None:
+    run.open(file)
+    wait(run, lambda frame: frame.grains == 2)
+    run.send(Change("grains", 7))
+    wait(run, lambda frame: frame.grains == 7 and len(frame.bodies) == 2)
+    made = run.snapshot.made
+    assert made is not None
+    assert made.file is None
+
+
+def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
+    first = Run("mixed", 1, autosave=Autosave(tmp_path, 0.02))
+    first.start("workshop", {"grains": 0})
+    wait(first, lambda frame: True)
+    first.send(WALL)
+    first.send(Place(10.0, 4.0, "auxetic"))
+    wait(first, lambda frame: frame.grains == 1)
+    first.close(None, clean=False)
+    (leftover,) = find(tmp_path)
+    second = Run("regular", 5, autosave=Autosave(tmp_path, 0.02))
+    second.take_up(leftover)
+    frame = wait(second, lambda frame: frame.grains == 1)
+    assert (frame.packing, frame.seed) == ("mixed", 1)
+    assert len(frame.bodies) == 3
+    wait(second, lambda _: not leftover.path.exists())
+    assert second.autosave is not None
+    kept = read_scene(second.autosave.path)
+    assert kept.grains.hash() == leftover.file.grains.hash()
+    second.close(None)
+    assert not list(tmp_path.iterdir())

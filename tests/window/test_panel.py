@@ -1,0 +1,412 @@
+"""The panel by mouse and by keyboard: what is shown, what is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pygame
+import pytest
+
+from sandbox import language
+from sandbox.commands import Change, Command, Protocol, Reset
+from sandbox.draw import words
+from sandbox.draw.widgets import Button, Choice, Heading, Slider, Stepper, TextField, parts_of
+from sandbox.window.edit import Edit
+from tests.window.desk import Desk
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+    language.use("en")
+    yield
+    language.use("en")
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    place = Desk((1024, 720))
+    place.start()
+    place.app.tick()
+    yield place
+    place.app.close()
+
+
+def box(desk: Desk, name: str) -> pygame.Rect:
+    """Where a control is, scrolled into view."""
+    panel = desk.app.panel
+    panel.scroll = panel._places.scroll_to(name, panel.scroll, panel._view, 0)
+    desk.app.tick()
+    rect = panel.place_of(name)
+    assert rect is not None, name
+    return rect
+
+
+def control(desk: Desk, name: str) -> object:
+    place = desk.app.panel._places.named(name)
+    return None if place is None else place.control
+
+
+def value(desk: Desk, name: str) -> float:
+    found = control(desk, name)
+    assert isinstance(found, Slider)
+    return found.value
+
+
+def track(desk: Desk, name: str) -> pygame.Rect:
+    box(desk, name)
+    place = desk.app.panel._places.named(name)
+    assert place is not None
+    parts = parts_of(place.control, place.rect, desk.app.renderer.type)
+    return parts.track.move(desk.app.panel.rect.left, -desk.app.panel.scroll)
+
+
+def number(desk: Desk, name: str) -> tuple[int, int]:
+    box(desk, name)
+    place = desk.app.panel._places.named(name)
+    assert place is not None
+    parts = parts_of(place.control, place.rect, desk.app.renderer.type)
+    return parts.box.move(desk.app.panel.rect.left, -desk.app.panel.scroll).center
+
+
+def go_to(desk: Desk, name: str) -> None:
+    """By Tab alone."""
+    for _ in range(60):
+        if desk.app.focus.ring == name:
+            return
+        desk.key(pygame.K_TAB)
+    raise AssertionError(f"Tab never came to {name}")
+
+
+def sent(desk: Desk) -> list[Command]:
+    return desk.session.commands
+
+
+NU = "grains/regular_poisson_ratio"  # acts at once
+SHARE = "grains/auxetic_fraction"  # packs anew
+
+
+# -- keyboard --
+
+
+def test_tab_goes_through_everything_and_comes_back(desk: Desk) -> None:
+    desk.app.panel.folded.clear()
+    desk.app.tick()
+    wanted = desk.app.focus.stops()
+    assert {"canvas/intruder", "general/packing", NU, "solver/tolerance", "time/bar"} <= set(wanted)
+    seen = []
+    for _ in wanted:
+        desk.key(pygame.K_TAB)
+        seen.append(desk.app.focus.ring)
+        rect = desk.app.panel.place_of(seen[-1])
+        if rect is not None:  # what has the ring can be seen
+            view = desk.app.panel.rect.copy()
+            view.height = desk.app.panel._view
+            assert view.contains(rect), seen[-1]
+    assert seen == wanted
+    desk.key(pygame.K_TAB)
+    assert desk.app.focus.ring == wanted[0]
+    desk.key(pygame.K_TAB, mod=pygame.KMOD_SHIFT)
+    assert desk.app.focus.ring == wanted[-1]
+
+
+def test_every_control_answers_the_keyboard(desk: Desk) -> None:
+    """Every control of the panel is changed by keys alone, and every change has its effect."""
+    desk.app.panel.folded.clear()
+    desk.app.tick()
+    for name in desk.app.panel.stops():
+        found = control(desk, name)
+        if found is None or isinstance(found, (Button, Heading, TextField)):
+            continue
+        go_to(desk, name)
+        before = effects(desk)
+        if isinstance(found, Slider):
+            desk.key(pygame.K_LEFT if found.value >= found.high else pygame.K_RIGHT)
+            desk.key(pygame.K_RETURN)
+            if desk.app.panel.edit is not None:  # it acted at once, and Enter began to type
+                desk.key(pygame.K_ESCAPE)
+        elif isinstance(found, (Choice, Stepper)):
+            desk.key(pygame.K_RIGHT)
+        elif name != "looks/sound":  # there may be no sound device
+            desk.key(pygame.K_SPACE)
+        else:
+            continue
+        desk.until(lambda before=before: effects(desk) != before, seconds=20)  # type: ignore[misc]
+
+
+def effects(desk: Desk) -> tuple[object, ...]:
+    """All that the panel can change."""
+    renderer = desk.app.renderer
+    looks = renderer.view.name, renderer.chains, renderer.theme.name, renderer.scale
+    return len(sent(desk)), *looks, language.present()
+
+
+def test_buttons_by_enter_and_space(desk: Desk) -> None:
+    go_to(desk, "general/drive")
+    desk.key(pygame.K_SPACE)
+    desk.until(lambda: Protocol(True) in sent(desk))
+    assert not desk.paused()
+    desk.until(lambda: desk.session.frame().protocol)
+    go_to(desk, "general/reset")
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: Reset() in sent(desk))
+
+
+def test_escape_leads_back_to_the_canvas_first(desk: Desk) -> None:
+    go_to(desk, NU)
+    desk.key(pygame.K_ESCAPE)
+    assert desk.app.focus.on_canvas
+    assert desk.app.focus.ring == ""
+    assert desk.page() == "run"
+    desk.key(pygame.K_ESCAPE)
+    assert desk.page() == "menu"
+
+
+def test_arrows_and_pages_on_a_live_slider_act_at_once(desk: Desk) -> None:
+    go_to(desk, NU)
+    desk.key(pygame.K_LEFT)
+    assert value(desk, NU) == pytest.approx(0.79)
+    desk.key(pygame.K_PAGEDOWN)
+    assert value(desk, NU) == pytest.approx(0.69)
+    desk.until(lambda: Change("regular_poisson_ratio", 0.69) in sent(desk))
+    desk.key(pygame.K_DELETE)
+    desk.until(lambda: sent(desk)[-1] == Change("regular_poisson_ratio", 0.8))
+    desk.key(pygame.K_HOME)
+    desk.until(lambda: sent(desk)[-1] == Change("regular_poisson_ratio", 0.0))
+
+
+def test_keys_on_what_packs_anew_wait_for_enter(desk: Desk) -> None:
+    go_to(desk, SHARE)
+    for _ in range(3):
+        desk.key(pygame.K_RIGHT)
+    assert value(desk, SHARE) == pytest.approx(0.53)
+    assert sent(desk) == []
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: sent(desk) == [Change("auxetic_fraction", 0.53)])
+    desk.key(pygame.K_RIGHT)
+    desk.key(pygame.K_ESCAPE)  # thinks better of it
+    desk.app.tick()
+    assert value(desk, SHARE) == pytest.approx(0.53)
+    desk.key(pygame.K_RIGHT)
+    desk.key(pygame.K_TAB)  # and going on is as good as Enter
+    desk.until(lambda: sent(desk)[-1] == Change("auxetic_fraction", 0.54))
+    assert len(sent(desk)) == 2
+
+
+def test_a_number_is_typed(desk: Desk) -> None:
+    go_to(desk, NU)
+    desk.type("0,25")
+    assert desk.app.panel.edit is not None
+    assert sent(desk) == []
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: sent(desk) == [Change("regular_poisson_ratio", 0.25)])
+    assert desk.app.focus.ring == NU
+    desk.type("7")
+    desk.key(pygame.K_RETURN)
+    assert "between" in desk.app.notices.latest
+    desk.type("-")
+    desk.key(pygame.K_ESCAPE)
+    assert len(sent(desk)) == 1
+    assert desk.page() == "run"
+
+
+def test_letters_do_what_they_always_do_but_not_while_typing(desk: Desk) -> None:
+    go_to(desk, NU)
+    desk.key(pygame.K_t)
+    assert desk.app.renderer.theme.name == "light"
+    desk.key(pygame.K_RETURN)
+    desk.key(pygame.K_t)
+    assert desk.app.renderer.theme.name == "light"
+    desk.key(pygame.K_ESCAPE)
+    assert sent(desk) == []
+
+
+def test_seed_is_stepped_and_typed(desk: Desk) -> None:
+    go_to(desk, "general/seed")
+    desk.key(pygame.K_RIGHT)
+    desk.until(lambda: sent(desk) == [Change("seed", 2)])
+    desk.type("77")
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: sent(desk)[-1] == Change("seed", 77))
+    desk.type("7-")
+    desk.key(pygame.K_RETURN)
+    assert desk.app.notices.latest == words.SEED_WRONG
+
+
+def test_sections_fold_by_keyboard(desk: Desk) -> None:
+    go_to(desk, "grains")
+    desk.key(pygame.K_RETURN)
+    desk.app.tick()
+    assert control(desk, NU) is None
+    desk.key(pygame.K_RIGHT)
+    desk.app.tick()
+    assert control(desk, NU) is not None
+
+
+def test_held_key_repeats(desk: Desk) -> None:
+    go_to(desk, NU)
+    desk.post(pygame.KEYDOWN, key=pygame.K_LEFT, unicode="", mod=0)
+    desk.until(lambda: value(desk, NU) < 0.75, seconds=20)
+    desk.post(pygame.KEYUP, key=pygame.K_LEFT, mod=0)
+    desk.app.tick()
+    still = value(desk, NU)
+    for _ in range(40):
+        desk.app.tick()
+    assert value(desk, NU) == still
+
+
+# -- mouse --
+
+
+def test_dragging_a_live_slider_sends_no_more_than_a_change_a_picture(desk: Desk) -> None:
+    rail = track(desk, NU)
+    desk.press((rail.left + 0.5 * rail.width, rail.centery))
+    for step in range(30):
+        x = rail.left + (0.5 + 0.01 * step) * rail.width
+        pygame.event.post(
+            pygame.event.Event(
+                pygame.MOUSEMOTION, pos=(round(x), rail.centery), rel=(1, 0), buttons=(1, 0, 0)
+            )
+        )
+        if step % 10 == 9:
+            desk.app.tick()
+    desk.app.tick()
+    desk.release((rail.left + 0.79 * rail.width, rail.centery))
+    shown = value(desk, NU)
+    assert shown == pytest.approx(0.99 * 0.79, abs=0.01)
+    desk.until(lambda: sent(desk)[-1:] == [Change("regular_poisson_ratio", shown)])
+    assert 1 <= len(sent(desk)) <= 6
+
+
+def test_dragging_what_packs_anew_sends_once_at_the_end(desk: Desk) -> None:
+    rail = track(desk, SHARE)
+    desk.press((rail.centerx, rail.centery))
+    for share in (0.6, 0.7, 0.75):
+        desk.point((rail.left + share * rail.width, rail.centery), pressed=True)
+        assert value(desk, SHARE) == pytest.approx(share, abs=0.01)
+    assert sent(desk) == []
+    desk.release((rail.left + 0.75 * rail.width, rail.centery))
+    desk.until(lambda: sent(desk) != [])
+    (change,) = sent(desk)
+    assert isinstance(change, Change)
+    assert change.name == "auxetic_fraction"
+    assert change.value == pytest.approx(0.75, abs=0.01)
+
+
+def test_double_click_brings_the_default_back(desk: Desk) -> None:
+    rail = track(desk, NU)
+    desk.click((rail.left + 0.2 * rail.width, rail.centery))
+    desk.until(lambda: desk.session.changed != {})
+    desk.app.panel._clicked = ("", 0.0)
+    spot = (rail.left + 0.2 * rail.width, rail.centery)
+    desk.click(spot)
+    desk.click(spot)
+    desk.until(lambda: desk.session.changed == {"regular_poisson_ratio": 0.8})
+
+
+def test_click_on_the_number_begins_to_type(desk: Desk) -> None:
+    desk.click(number(desk, NU))
+    assert desk.app.panel.edit is not None
+    desk.type("0.3")
+    desk.click((200, 300))  # elsewhere: as good as Enter
+    desk.until(lambda: desk.session.changed == {"regular_poisson_ratio": 0.3})
+
+
+def test_packing_by_mouse(desk: Desk) -> None:
+    rect = box(desk, "general/packing")
+    desk.click((rect.left + 20, rect.bottom - 10))
+    desk.until(lambda: sent(desk) == [Change("packing", "regular")])
+
+
+def test_wheel_and_finger_scroll(desk: Desk) -> None:
+    panel = desk.app.panel
+    desk.point(panel.rect.center)
+    desk.post(pygame.MOUSEWHEEL, precise_y=-2.0, y=-2, x=0)
+    assert panel.scroll > 0
+    before = panel.scroll
+    heading = box(desk, "geometry")
+    before = panel.scroll
+    desk.press(heading.center)
+    desk.point((heading.centerx, heading.centery - 60), pressed=True)
+    desk.release((heading.centerx, heading.centery - 60))
+    assert panel.scroll > before
+    assert "geometry" not in panel.folded  # it was no click
+
+
+def test_fold_gives_the_canvas_the_room(desk: Desk) -> None:
+    width = desk.app.renderer.layout.canvas.width
+    desk.key(pygame.K_k)
+    desk.app.tick()
+    assert not desk.app.panel.drawer.shown
+    assert desk.app.renderer.layout.canvas.width > width
+    assert not any(name.startswith("general") for name in desk.app.focus.stops())
+    desk.key(pygame.K_k)
+    assert desk.app.renderer.layout.canvas.width == width
+
+
+def test_folded_panel_opens_by_mouse(desk: Desk) -> None:
+    rect = box(desk, "general/fold")
+    desk.click(rect.center)
+    assert not desk.app.panel.drawer.shown
+    desk.click(desk.app.panel.drawer.tab.center)
+    assert desk.app.panel.drawer.shown
+
+
+def test_where_there_is_no_room_the_panel_opens_over_the_canvas() -> None:
+    desk = Desk((800, 600), 2.0)
+    desk.start()
+    panel = desk.app.panel
+    assert panel.rect.width == 0
+    desk.key(pygame.K_k)
+    desk.app.tick()
+    assert 600 <= panel.rect.width <= 800
+    assert panel.rect.right == desk.app.renderer.size[0]
+    assert "general/reset" in panel.stops()
+    assert desk.app.timeline.rect.height == 0
+    rect = box(desk, "time/play")  # there is no room for the time line: its buttons are here
+    desk.click(rect.center)
+    assert desk.paused()
+    desk.click((panel.rect.left - 20, 300))
+    assert panel.rect.width == 0
+    desk.app.close()
+
+
+def test_press_on_the_panel_is_none_on_the_canvas(desk: Desk) -> None:
+    desk.app.panel.drawer.over = True
+    rect = desk.app.panel.rect
+    desk.press((rect.centerx, rect.bottom - 5))
+    assert not desk.app.mouse.holding
+    desk.release((rect.centerx, rect.bottom - 5))
+
+
+def test_what_the_solver_refuses_is_shown_as_it_was(desk: Desk) -> None:
+    """A change that never comes true is forgotten after a while."""
+    desk.session.refused = {"auxetic_fraction"}
+    go_to(desk, SHARE)
+    desk.key(pygame.K_RIGHT)
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: value(desk, SHARE) == pytest.approx(0.51))
+    desk.until(lambda: value(desk, SHARE) == pytest.approx(0.5), seconds=10)
+
+
+# -- typing --
+
+
+def test_editing_a_line() -> None:
+    edit = Edit.of("x", "abc")
+    for key, sign in (
+        (pygame.K_END, ""),
+        (pygame.K_d, "d"),
+        (pygame.K_HOME, ""),
+        (pygame.K_z, "z"),
+    ):
+        assert edit.key(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=sign, mod=0))
+    assert edit.text == "zabcd"
+    for key in (pygame.K_DELETE, pygame.K_RIGHT, pygame.K_BACKSPACE):
+        edit.key(pygame.event.Event(pygame.KEYDOWN, key=key, unicode="", mod=0))
+    assert edit.text == "zcd"
+    assert not edit.key(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_F5, unicode="", mod=0))
+    fresh = Edit.of("x", "abc")
+    fresh.key(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_q, unicode="q", mod=0))
+    assert fresh.text == "q"

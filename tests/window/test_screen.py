@@ -1,0 +1,74 @@
+"""The smallest use of the real program on a real screen: open, drag, look, quit."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.window.screen import Person, invisible_screen, needs_screen, play, wait_for
+
+pytestmark = [pytest.mark.end_to_end, needs_screen]
+
+
+@pytest.fixture
+def person(tmp_path: Path) -> Iterator[Person]:
+    with invisible_screen() as display:
+        yield Person(display, tmp_path)
+
+
+def test_open_drag_and_quit(person: Person) -> None:
+    log = person.folder / "run.jsonl"
+    with play(person, "intruder", "--set", "grains=150", "--log", str(log)) as program:
+        wait_for(person.find_window, 60, "the window")
+        person.key("f")  # nothing on the canvas is orange but handle and hand
+        place: list[tuple[int, int]] = []
+
+        def seen() -> bool:
+            found = person.knob()
+            place.extend([found] if found else [])
+            return bool(place)
+
+        wait_for(seen, 180, "the scene: the first start compiles")
+        x, y = place[0]
+        person.do("mousemove", x, y, "mousedown", 1)
+        for step in range(1, 16):
+            person.do("mousemove", x + 4 * step, y)
+            time.sleep(0.03)
+        time.sleep(2.0)
+        moved = person.screenshot()
+        person.do("mouseup", 1)
+        person.key("h")
+        assert not np.array_equal(person.screenshot(), moved)
+        person.key("Escape")  # the page of keys
+        person.key("Escape")  # to the menu
+        menu = person.screenshot()
+        assert not np.array_equal(menu, moved)
+        person.key("Escape")  # out
+        _, errors = program.communicate(timeout=30)
+    assert program.returncode == 0, errors
+    assert errors == ""
+    lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    done = [line["command"] for line in lines if "command" in line]
+    assert done[0] == "grab"
+    assert done[-1] == "release"
+    assert "move" in done
+    assert lines[-1]["end"] > 0
+
+
+def test_menu_to_a_scene_by_keyboard(person: Person) -> None:
+    with play(person) as program:
+        wait_for(person.find_window, 60, "the window")
+        # The keys count once the menu is there; the splash lets them pass too.
+        person.key("Right")
+        person.key("Return")
+        wait_for(lambda: person.knob() is not None, 180, "the scene")
+        person.key("m")
+        person.key("Escape")
+        _, errors = program.communicate(timeout=30)
+    assert program.returncode == 0, errors
+    assert errors == ""

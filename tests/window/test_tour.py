@@ -1,0 +1,172 @@
+"""The card of a tour: keys and mouse, what it waits for, and that it hides no handle."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import pygame
+import pytest
+
+from sandbox import tours
+from sandbox.draw import words
+from sandbox.draw.overlays import KNOB
+from sandbox.draw.tour_card import BACK, CLOSE, NEXT
+from sandbox.window.tour import Guide
+from tests.window.desk import Desk
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    place = Desk((1000, 700))
+    yield place
+    place.app.close()
+
+
+@pytest.fixture
+def touring(desk: Desk) -> Desk:
+    desk.app.guide.start("intruder")
+    ready(desk)
+    return desk
+
+
+def ready(desk: Desk) -> None:
+    run = desk.app.run
+    desk.until(lambda: not desk.app._splash and all(s.phase == "running" for s in run.snapshots))
+    desk.app.tick()
+
+
+def press(desk: Desk, name: str) -> None:
+    guide = desk.app.guide
+    button = guide._layout(guide.rect.width).buttons[name].move(guide.rect.topleft)
+    desk.press(button.center)
+    desk.release(button.center)
+
+
+def test_start_here_leads_to_three_packings_and_their_tour(desk: Desk) -> None:
+    desk.app.open_menu()
+    desk.until(lambda: not desk.app._splash)
+    assert desk.app.menu.chosen == "start"
+    desk.key(pygame.K_RETURN)
+    ready(desk)
+    assert desk.app.guide.on
+    assert [session.scene for session in desk.sessions] == ["hopper"] * 3
+    assert desk.app.run.packings == ("regular", "mixed", "auxetic")
+
+
+def test_tour_by_its_key_and_from_the_menu(desk: Desk) -> None:
+    desk.start()
+    seen = []
+    for keys in ((pygame.K_y,), (pygame.K_y,), (pygame.K_m, pygame.K_y)):
+        for key in keys:
+            desk.key(key)
+        ready(desk)
+        seen.append((desk.page(), desk.app.guide.on))
+    assert seen == [("run", True), ("run", False), ("run", True)]
+    assert desk.app.guide.scene == "intruder"
+
+
+def test_a_step_is_done_by_doing_it(touring: Desk) -> None:
+    guide = touring.app.guide
+    assert (guide.index, guide.done) == (0, False)
+    assert guide.page.onward == words.TOUR_WHY  # it explains before it goes on
+    start = touring.handle_place()
+    touring.press(start)
+    assert touring.app.mouse.holding
+    scale = touring.app.renderer.camera.scale
+    touring.point((start[0] + 4.0 * scale, start[1]), pressed=True)
+    touring.until(lambda: guide.done)
+    assert guide.page.why == words.tour_text("intruder", "drag", "why")
+    touring.release((start[0] + 4.0 * scale, start[1]))
+    touring.key(pygame.K_RETURN)
+    assert (guide.index, guide.done) == (1, False)
+    assert touring.app.renderer.view.name == "chains"
+
+
+def test_every_step_by_keyboard_alone(touring: Desk) -> None:
+    guide = touring.app.guide
+    steps = tours.steps("intruder")
+    seen = []
+    while guide.on:
+        ready(touring)
+        seen.append((guide.index, guide.done))
+        touring.key(pygame.K_RETURN)
+    assert seen == [(k, done) for k in range(len(steps)) for done in (False, True)]
+
+
+def test_back_and_close_by_keyboard(touring: Desk) -> None:
+    guide = touring.app.guide
+    touring.key(pygame.K_BACKSPACE)
+    assert guide.index == 0
+    for _ in range(2):
+        touring.key(pygame.K_RETURN)
+    assert guide.index == 1
+    touring.key(pygame.K_BACKSPACE)
+    assert guide.index == 0
+    touring.key(pygame.K_ESCAPE)
+    assert not guide.on
+    assert touring.page() == "run"
+
+
+def test_buttons_by_tab(touring: Desk) -> None:
+    guide, focus = touring.app.guide, touring.app.focus
+    while focus.name != NEXT:
+        touring.key(pygame.K_TAB)
+    touring.key(pygame.K_SPACE, " ")
+    assert guide.done
+    while focus.name != CLOSE:
+        touring.key(pygame.K_TAB)
+    touring.key(pygame.K_RETURN)
+    assert not guide.on
+    assert focus.on_canvas
+
+
+def test_buttons_by_mouse(touring: Desk) -> None:
+    guide = touring.app.guide
+    for name, expected in ((NEXT, (0, True)), (NEXT, (1, False)), (BACK, (0, False))):
+        press(touring, name)
+        ready(touring)
+        assert (guide.index, guide.done) == expected
+    touring.press(guide.rect.center)  # the card lets nothing through
+    assert not touring.app.mouse.holding
+    press(touring, CLOSE)
+    assert not guide.on
+
+
+def test_another_scene_ends_the_tour(touring: Desk) -> None:
+    touring.app.start("hopper")
+    touring.app.tick()
+    assert not touring.app.guide.on
+
+
+def covered(guide: Guide) -> bool:
+    scale = guide.app.renderer.scale
+    near = guide.rect.inflate(2 * KNOB * scale, 2 * KNOB * scale)  # a knob and its rim
+    return any(
+        near.collidepoint(camera.to_screen(handle.x, handle.y))
+        for frame, camera, _ in guide.app.panes()
+        for handle in frame.handles
+    )
+
+
+@pytest.mark.parametrize("folded", [False, True])
+def test_the_card_hides_no_handle_and_stays_in_the_window(touring: Desk, folded: bool) -> None:
+    app, guide = touring.app, touring.app.guide
+    if folded:
+        app.panel.drawer.switch()
+    for scale, _ in itertools.product((1.0, 1.5, 2.0), range(2)):
+        app.renderer.resize(app.renderer.size, scale)
+        app.tick()
+        assert app.screen.get_rect().contains(guide.rect)
+        assert not covered(guide)
+        if guide.docked:
+            assert not guide.rect.colliderect(app.panel.rect)
+            assert app.renderer.layout.panel.contains(guide.rect)
+        guide.next()
+        ready(touring)

@@ -1,0 +1,488 @@
+"""The window under a driver that shows nothing, driven by posted events."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pygame
+import pytest
+
+from core.errors import InputError
+from sandbox import language
+from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.draw import words
+from sandbox.window import display
+from sandbox.window.app import App
+from sandbox.window.run import Run
+from scenes import registry
+from tests.window.fake_session import FakeSession
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+
+
+class Desk:
+    """A window, the sessions made for it, and a person at it."""
+
+    def __init__(self) -> None:
+        self.sessions: list[FakeSession] = []
+        self.app = App(Run("mixed", 1, self._make), size=(800, 600), scale=1.0)
+
+    def _make(self, *arguments: Any) -> Any:
+        session = FakeSession(*arguments)
+        self.sessions.append(session)
+        return session
+
+    @property
+    def session(self) -> FakeSession:
+        return self.sessions[-1]
+
+    def page(self) -> str:
+        if not self.app.running:
+            return "closed"
+        return "menu" if self.app.show_menu else "help" if self.app.show_help else "run"
+
+    def paused(self) -> bool:
+        return self.app.run.paused
+
+    def start(self) -> None:
+        self.app.start("intruder")
+        self.until(lambda: not self.app._splash)
+
+    def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
+        patience = time.perf_counter() + seconds
+        while not condition():
+            assert time.perf_counter() < patience, "waited in vain"
+            self.app.tick()
+
+    def post(self, kind: int, **more: Any) -> None:
+        pygame.event.post(pygame.event.Event(kind, more))
+        self.app.tick()
+
+    def key(self, key: int, unicode: str = "") -> None:
+        sign = unicode or (chr(key) if 32 <= key < 127 else "")
+        self.post(pygame.KEYDOWN, key=key, unicode=sign, mod=0)
+
+    def point(self, place: tuple[float, float], pressed: bool = False) -> None:
+        pos = (round(place[0]), round(place[1]))
+        self.post(pygame.MOUSEMOTION, pos=pos, rel=(0, 0), buttons=(int(pressed), 0, 0))
+
+    def press(self, place: tuple[float, float]) -> None:
+        pos = (round(place[0]), round(place[1]))
+        self.post(pygame.MOUSEBUTTONDOWN, pos=pos, button=1)
+
+    def release(self, place: tuple[float, float]) -> None:
+        pos = (round(place[0]), round(place[1]))
+        self.post(pygame.MOUSEBUTTONUP, pos=pos, button=1)
+
+    def handle_place(self) -> tuple[float, float]:
+        frame = self.app.run.snapshot.frame
+        assert frame is not None
+        handle = frame.handles[0]
+        return self.app.renderer.camera.to_screen(handle.x, handle.y)
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    place = Desk()
+    yield place
+    place.app.close()
+
+
+@pytest.fixture
+def running(desk: Desk) -> Desk:
+    desk.start()
+    return desk
+
+
+def test_splash_is_drawn_while_building(desk: Desk) -> None:
+    desk.app.start("intruder")
+    desk.app.tick()
+    assert desk.app.run.snapshot.phase in ("building", "running")
+    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+
+
+def test_drag_grabs_moves_and_releases(running: Desk) -> None:
+    start = running.handle_place()
+    running.press((start[0] + 5, start[1]))
+    assert running.app.mouse.holding
+    for step in range(1, 9):
+        running.point((start[0] + 5 + 10 * step, start[1]), pressed=True)
+    scale = running.app.renderer.camera.scale
+    wanted = running.app.renderer.camera.to_world(start[0], start[1])[0] + 80 / scale
+    running.until(lambda: abs(running.session.frame().handles[0].x - wanted) < 0.6 / scale)
+    running.release((start[0] + 85, start[1]))
+    running.until(lambda: Release("intruder") in running.session.commands)
+    commands = running.session.commands
+    assert commands[0] == Grab("intruder")
+    moves = [command for command in commands if isinstance(command, Move)]
+    assert moves[-1].x == pytest.approx(wanted, abs=0.6 / scale)  # no jump by the grip's offset
+    assert not running.app.mouse.holding
+
+
+def test_press_beside_the_handle_does_nothing(running: Desk) -> None:
+    running.press((3, 300))
+    running.release((3, 300))
+    assert running.session.commands == []
+
+
+def test_hover_changes_the_cursor(running: Desk) -> None:
+    running.point(running.handle_place())
+    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_HAND
+    running.press(running.handle_place())
+    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_SIZEALL
+    running.release(running.handle_place())
+    running.point((3, 300))
+    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_ARROW
+
+
+def test_dragging_out_of_the_window_stops_at_the_canvas_edge(running: Desk) -> None:
+    running.press(running.handle_place())
+    running.point((5000, 250), pressed=True)
+    target = running.app.mouse.hand.target
+    assert target is not None
+    edge = running.app.renderer.camera.to_world(800, 0)[0]
+    assert target[0] <= edge + 1.0
+
+
+def test_leaving_the_window_lets_go(running: Desk) -> None:
+    running.press(running.handle_place())
+    running.post(pygame.WINDOWFOCUSLOST)
+    running.until(lambda: Release("intruder") in running.session.commands)
+
+
+def test_pause_step_and_drive(running: Desk) -> None:
+    running.key(pygame.K_SPACE)
+    assert running.paused()
+    running.key(pygame.K_a)
+    for count in (1, 2):
+        running.key(pygame.K_s)
+        running.until(lambda count=count: running.session.increments == count)  # type: ignore[misc]
+    running.key(pygame.K_SPACE)
+    running.until(lambda: running.session.increments > 4)
+    running.key(pygame.K_a)
+    running.until(lambda: Protocol(False) in running.session.commands)
+
+
+def test_reset_packing_and_seed(running: Desk) -> None:
+    running.key(pygame.K_r)
+    running.key(pygame.K_2)
+    running.key(pygame.K_2)  # already so: nothing is built anew
+    running.key(pygame.K_p)
+    running.key(pygame.K_n)
+    expected = [
+        Reset(),
+        Change("packing", "auxetic"),
+        Change("packing", "mixed"),
+        Change("seed", 2),
+    ]
+    running.until(lambda: running.session.commands == expected)
+
+
+def test_keys_by_what_is_printed_on_them(running: Desk) -> None:
+    # On a French keyboard the digit 1 is Shift and the key of '&'.
+    running.key(pygame.K_AMPERSAND, "1")
+    running.until(lambda: running.session.commands == [Change("packing", "regular")])
+    running.post(pygame.KEYDOWN, key=pygame.K_n, unicode="\x0e", mod=pygame.KMOD_LCTRL)
+    assert len(running.session.commands) == 1
+
+
+def test_views_in_turn(running: Desk) -> None:
+    seen = []
+    for _ in range(len(words.VIEWS)):
+        running.key(pygame.K_v)
+        renderer = running.app.renderer
+        seen.append(renderer.view.name)
+        assert renderer.chains == renderer.view.chains
+        running.key(pygame.K_f)  # where chains are all there is to see they stay
+        assert renderer.chains == (renderer.view.chains == renderer.view.only_chains)
+    assert sorted(seen) == sorted(words.VIEWS)
+    assert seen[-1] == "kind"
+
+
+def test_chains_theme_scale_and_help(running: Desk) -> None:
+    running.key(pygame.K_f)
+    assert not running.app.renderer.chains
+    running.key(pygame.K_t)
+    assert running.app.renderer.theme.name == "light"
+    running.key(pygame.K_PLUS, "+")
+    assert running.app.renderer.scale == 1.25
+    running.key(pygame.K_MINUS, "-")
+    running.key(pygame.K_MINUS, "-")
+    assert running.app.renderer.scale == 1.0
+    running.key(pygame.K_F1)
+    assert running.page() == "help"
+    running.key(pygame.K_ESCAPE)
+    assert running.page() == "run"
+
+
+def test_menu_by_keyboard(desk: Desk) -> None:
+    desk.app.open_menu()
+    desk.until(lambda: not desk.app._splash)
+    desk.app.tick()
+    assert desk.app.menu.chosen == "start"
+    desk.key(pygame.K_2)
+    desk.key(pygame.K_DOWN)
+    desk.key(pygame.K_TAB)
+    desk.post(pygame.KEYDOWN, key=pygame.K_TAB, unicode="", mod=pygame.KMOD_LSHIFT)
+    desk.key(pygame.K_RIGHT)
+    names = registry.names()
+    assert desk.app.menu.chosen == f"scene/{names[1]}"
+    desk.key(pygame.K_RETURN)
+    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+    assert (desk.session.scene, desk.session.packing) == (names[1], "auxetic")
+    assert desk.page() == "run"
+
+
+def test_tab_goes_through_the_whole_menu_and_shows_it(running: Desk) -> None:
+    running.key(pygame.K_m)
+    first = running.app.menu.chosen
+    seen: list[str] = []
+    while not seen or running.app.menu.chosen != first:
+        running.key(pygame.K_TAB)
+        seen.append(running.app.menu.chosen)
+        place = running.app.menu.place_of(seen[-1])
+        assert place is not None
+        assert running.app.screen.get_rect().contains(place)
+    assert {name.partition("/")[0] for name in seen} >= {"start", "scene", "packing", "language"}
+    assert len(seen) == len(set(seen)) >= len(registry.names()) + 5
+
+
+def test_chips_of_the_menu_switch_theme_language_and_open_the_keys(running: Desk) -> None:
+    menu = running.app.menu
+    running.key(pygame.K_m)
+    for chip, expected in (("theme", "light"), ("language", "de"), ("keys", "help")):
+        place = menu.place_of(chip)
+        assert place is not None
+        running.press(place.center)
+        now = (running.app.renderer.theme.name, language.present())
+        assert expected in (*now, "help" if running.app.show_help else "")
+    running.key(pygame.K_ESCAPE)
+    running.key(pygame.K_l)
+    assert (running.page(), running.app.show_help) == ("menu", False)
+    assert language.present() == "en"
+
+
+def test_menu_by_mouse_and_back(running: Desk) -> None:
+    running.key(pygame.K_a)
+    running.key(pygame.K_m)
+    assert running.page() == "menu"
+    assert running.paused()
+    running.key(pygame.K_m)
+    assert running.page() == "run"
+    assert not running.paused()
+    running.key(pygame.K_ESCAPE)
+    for _ in registry.names():
+        running.key(pygame.K_UP)
+    first = registry.names()[0]
+    place = running.app.menu.place_of(first)
+    assert place is not None
+    running.point(place.center)
+    assert running.app.menu.cursor() == pygame.SYSTEM_CURSOR_HAND
+    running.press(place.center)
+    running.until(lambda: running.app.run.snapshot.phase == "running")
+    assert [session.scene for session in running.sessions] == ["intruder", first]
+
+
+def test_scene_files_of_the_folder_are_in_the_menu(
+    running: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = 'format = "auxetic-sandbox scene"\nscene = "hopper"\n'
+    (tmp_path / "my bridge.toml").write_text(head, encoding="utf-8")
+    (tmp_path / "pyproject.toml").write_text('name = "no scene"\n', encoding="utf-8")
+    (tmp_path / "broken.toml").write_bytes(b"\xff = [")
+    monkeypatch.chdir(tmp_path)
+    running.key(pygame.K_m)
+    files = [
+        card for card in running.app.menu.contents("mixed", "dark").cards if "file/" in card.name
+    ]
+    assert [(card.title, card.picture) for card in files] == [("my bridge", "hopper")]
+
+
+def test_packing_looked_at_in_the_menu_only_is_forgotten(running: Desk) -> None:
+    running.key(pygame.K_m)
+    running.key(pygame.K_1)
+    assert running.app.run.packing == "regular"
+    running.key(pygame.K_m)
+    assert running.app.run.packing == "mixed"
+
+
+def test_escape_leads_to_the_menu_then_out(running: Desk) -> None:
+    running.key(pygame.K_ESCAPE)
+    assert running.page() == "menu"
+    running.key(pygame.K_ESCAPE)
+    assert running.page() == "closed"
+
+
+def test_failure_is_shown_and_reset_builds_anew(running: Desk) -> None:
+    running.session.fail = RuntimeError("a grain got lost")
+    running.key(pygame.K_a)
+    running.until(lambda: running.app.run.snapshot.phase == "failed")
+    running.app.tick()
+    running.key(pygame.K_SPACE)  # nothing but reset, menu and quit make sense now
+    running.key(pygame.K_r)
+    running.until(lambda: running.app.run.snapshot.phase == "running")
+    assert len(running.sessions) == 2
+
+
+def test_failed_build_is_shown(desk: Desk) -> None:
+    desk.app.start("intruder")
+    desk.session.fail_build = InputError("too few grains to fill the funnel")
+    desk.until(lambda: desk.app.run.snapshot.phase in ("failed", "running"))
+    for _ in range(3):
+        desk.app.tick()
+    assert desk.app.running
+
+
+def test_screenshot_has_a_free_name(
+    running: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    running.key(pygame.K_F12)
+    running.key(pygame.K_F12)
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert names == ["sandbox-intruder-1.png", "sandbox-intruder-2.png"]
+    assert pygame.image.load(tmp_path / names[0]).get_size() == (800, 600)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders are not write-protected there")
+def test_screenshot_that_cannot_be_saved_says_so(
+    running: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(display, "atomic_write", full)
+    running.key(pygame.K_F12)
+    assert "No space left" in running.app.notices.latest
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_resizing_redraws_at_the_new_size(running: Desk) -> None:
+    running.app.screen = pygame.display.set_mode((1000, 700), pygame.RESIZABLE)
+    running.post(pygame.WINDOWSIZECHANGED, x=1000, y=700)
+    assert running.app.renderer.size == (1000, 700)
+
+
+def test_events_of_an_unbuilt_scene_do_no_harm(desk: Desk) -> None:
+    desk.app.start("intruder")
+    for key in (pygame.K_r, pygame.K_a, pygame.K_s, pygame.K_SPACE, pygame.K_f, pygame.K_h):
+        desk.key(key)
+    desk.press((400, 300))
+    desk.release((400, 300))
+    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+
+
+def test_hint_until_the_first_grab(running: Desk) -> None:
+    assert running.app.notices.lines("") == (words.HINT,)
+    running.press(running.handle_place())
+    assert running.app.notices.lines("") == ()
+
+
+def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
+    desk = Desk()
+    desk.start()
+    desk.key(pygame.K_a)
+    desk.until(lambda: desk.session.increments > 1)
+    desk.app.close(tmp_path / "run.jsonl")
+    assert desk.session.logged == str(tmp_path / "run.jsonl")
+    assert not desk.session.busy
+
+
+def test_quit_ends_the_loop(running: Desk) -> None:
+    running.post(pygame.QUIT)
+    assert running.page() == "closed"
+
+
+def test_unknown_scene_is_an_input_error(desk: Desk) -> None:
+    with pytest.raises(InputError, match="unknown"):
+        desk.app.start("unknown")
+
+
+def test_no_display_is_one_plain_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.platform", "linux")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(InputError, match="no display") as caught:
+        display.open_display((800, 600))
+    assert "record" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_display_that_cannot_be_opened_is_an_input_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> None:
+        raise pygame.error("x11 not available")
+
+    monkeypatch.setattr(pygame.display, "set_mode", broken)
+    with pytest.raises(InputError, match="x11 not available"):
+        display.open_display((800, 600))
+
+
+def test_window_is_not_larger_than_the_screen() -> None:
+    screen = display.open_display((100_000, 100))
+    desktop = pygame.display.get_desktop_sizes()[0]
+    assert screen.get_width() <= max(desktop[0], display.SMALLEST[0])
+    assert screen.get_height() == display.SMALLEST[1]
+    pygame.display.quit()
+
+
+def test_rate_says_what_holds_it_up() -> None:
+    rate = display.Rate()
+    rate.renew(1.0, 60.0)
+    assert rate.text.startswith("60 frames/s")
+    rate.renew(2.0, 20.0)
+    assert words.SLOW_MACHINE in rate.text
+    for _ in range(100):
+        rate.drew(0.05)
+    rate.renew(3.0, 20.0)
+    assert "drawing takes 50 ms" in rate.text
+
+
+def test_log_that_cannot_be_written_is_an_input_error(tmp_path: Path) -> None:
+    desk = Desk()
+    desk.start()
+
+    def full(path: str) -> None:
+        raise OSError(28, "No space left on device")
+
+    desk.session.write_log = full  # type: ignore[method-assign]
+    with pytest.raises(InputError, match="No space left"):
+        desk.app.close(tmp_path / "run.jsonl")
+
+
+@pytest.mark.end_to_end
+def test_quitting_while_compiling_is_no_crash(tmp_path: Path) -> None:
+    # LLVM aborts when the interpreter ends under a thread that compiles.
+    program = (
+        "import threading, time, pygame\n"
+        "from sandbox.window import app\n"
+        "def quit():\n"
+        "    time.sleep(1.5)\n"
+        "    pygame.event.post(pygame.event.Event(pygame.QUIT))\n"
+        "threading.Thread(target=quit, daemon=True).start()\n"
+        "raise SystemExit(app.run('intruder'))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env={
+            **os.environ,
+            "NUMBA_CACHE_DIR": str(tmp_path),
+            "PYTHONPATH": str(Path(__file__).parents[2]),
+        },
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
