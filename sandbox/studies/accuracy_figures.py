@@ -32,10 +32,15 @@ QUANTITIES = {
 }
 SCENES = ("#0072B2", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#D55E00", "#000000")
 MARKS = "osD^vx+*<>"
-SIZE = (10.4, 4.3)  # [inch]
+SIZE = (10.4, 5.0)  # [inch]
 RESOLUTION = 100  # [dots an inch]
 FRONT = "#BBBBBB"
-LEGEND: Any = {"frameon": True, "framealpha": 0.85, "edgecolor": "none"}  # readable over lines
+LEGEND: Any = {  # under the axes: it hides no point
+    "loc": "upper center",
+    "bbox_to_anchor": (0.5, -0.14),
+    "ncols": 3,
+    "columnspacing": 1.4,
+}
 
 
 def draw_scene(name: str, title: str, summary: Summary, path: Path) -> None:
@@ -171,7 +176,7 @@ def _model_error(axes: Any, scenes: Mapping[str, Mapping[str, Any]]) -> None:
     axes.axvline(50.0, color=FRONT, linestyle=":")
     axes.set_title("model error of the force against C → ∞")
     _logarithmic(axes, "C [k]", "error, relative")
-    axes.legend(fontsize=7, loc="upper right", **LEGEND)
+    axes.legend(fontsize=7, **LEGEND)
 
 
 def _cost(axes: Any, scenes: Mapping[str, Mapping[str, Any]]) -> None:
