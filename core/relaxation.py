@@ -108,6 +108,7 @@ class Relaxation:
             start = packing.state[:2].copy()
             self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
         self._minimizer = _minimizer(packing, friction is not None)
+        self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
         self.threads = threads
         self._shared = share(threads, count)
@@ -198,7 +199,7 @@ class Relaxation:
     def _changed_sides(self) -> set[tuple[int, int]]:
         """Grain and primitive, for the grains that have gone through an edge since the lists were made."""
         m, rigid = self._minimizer, self._rigid
-        if rigid is None or m.control[fire.LISTED] == 0.0:
+        if rigid is None or not self._listed:
             return set()
         changed = np.flatnonzero(
             rigid_contacts.changed_sides(m.reference, m.state, rigid, self._box)
@@ -209,6 +210,7 @@ class Relaxation:
     def _relist(self) -> None:
         # At new lists, as no grain has then come far since the last: later nobody can tell a way through from one around.
         self._through ^= self._changed_sides()
+        self._listed = True
         while True:
             answer = fire.relist(
                 self._minimizer, self._box, self._rigid, self._friction, self._limits.skin

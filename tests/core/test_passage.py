@@ -39,8 +39,10 @@ def state(x: float, y: float) -> np.ndarray:
         ((5.0, 0.5), (5.0, -0.5), True),
         ((5.0, -0.5), (6.0, 0.1), True),
         ((5.0, 0.5), (5.0, 0.1), False),
-        ((9.0, 0.5), (10.5, -0.5), False),  # around its end
-        ((-0.5, 0.5), (0.5, -0.5), False),
+        ((9.95, 0.1), (10.2, -0.05), False),  # around its end
+        ((-0.2, 0.1), (0.1, -0.1), False),
+        ((10.05, 0.1), (9.9, -0.1), True),  # from beyond its end
+        ((9.9, 0.1), (10.05, -0.1), True),
     ],
 )
 def test_from_one_side_of_a_face_to_the_other(
@@ -86,7 +88,7 @@ def test_between_two_lists_a_grain_changes_sides_only_by_going_through() -> None
     after = before.copy()
     after[1] -= 0.1
     after[1, 3] += 0.15
-    after[0, 2:4] -= (0.0, 0.05)
+    after[0, 2:4] -= (0.0, 0.1)
     changed = changed_sides(before, after, terms, None)
     assert terms.used[0] == 4
     assert terms.grain[: terms.used[0]][changed].tolist() == [0]  # the others stay, or go around
@@ -104,3 +106,15 @@ def test_through_and_back_is_not_through() -> None:
     assert relaxation.gone_through() == {(0, 0)}
     state_now[1] = 0.02
     assert relaxation.gone_through() == set()
+
+
+def test_a_grain_shot_through_a_face_between_new_lists_is_seen() -> None:
+    """Far through, by way of many lists, in one go."""
+    packing = Packing([5.0], [0.05])
+    packing.set_axes(1.0, 0.06, 0.0)
+    relaxation = Relaxation(
+        packing, np.array([FACE]), gravity=(0.0, -30.0), drag=1.0, max_iterations=2_000
+    )
+    relaxation.run(2_000)
+    assert relaxation._minimizer.state[1, 0] < -1.0
+    assert relaxation.gone_through() == {(0, 0)}
