@@ -25,7 +25,7 @@ def deep_grains(packing: Packing, contacts: RigidContacts, step: float) -> set[i
 def passed_faces(
     contacts: RigidContacts, start: Floats, state: Floats, rows_then: Floats, rows_now: Floats
 ) -> set[tuple[int, int]]:
-    """Grain and primitive, for the grains of ``contacts`` that are on the other side of a face that they touched.
+    """Grain and primitive, for the grains of ``contacts`` that have crossed a face that they touched, on a straight way.
 
     ``start`` and ``state`` (5, N) are the grains before and after, ``rows_then`` and ``rows_now`` (M, 8) the primitives. For
     small moves only: after a long one nobody can tell a way through from one around.
@@ -33,14 +33,15 @@ def passed_faces(
     face = rows_now[contacts.primitive, 0] == EDGE
     grain, primitive = contacts.grain[face], contacts.primitive[face]
     image = np.array([contacts.image_x[face], contacts.image_y[face]])
-    sides = []
-    over = np.ones(len(grain), dtype=bool)
+    along, beyond = [], []
     for places, rows in ((start, rows_then[primitive]), (state, rows_now[primitive])):
         dx, dy = places[:2, grain] + image - rows[:, 1:3].T
         ux, uy = rows[:, 3], rows[:, 4]
-        along = dx * ux + dy * uy
-        length = (rows[:, 5] - rows[:, 1]) * ux + (rows[:, 6] - rows[:, 2]) * uy
-        over &= (along >= 0.0) & (along <= length)
-        sides.append(ux * dy - uy * dx >= 0.0)
-    passed = over & (sides[0] != sides[1])
+        along.append(dx * ux + dy * uy)
+        beyond.append(ux * dy - uy * dx)
+    length = (rows[:, 5] - rows[:, 1]) * ux + (rows[:, 6] - rows[:, 2]) * uy
+    changed = (beyond[0] >= 0.0) != (beyond[1] >= 0.0)
+    way = np.where(changed, beyond[0] - beyond[1], 1.0)
+    crossing = along[0] + (along[1] - along[0]) * beyond[0] / way
+    passed = changed & (crossing >= 0.0) & (crossing <= length)
     return set(zip(grain[passed].tolist(), primitive[passed].tolist(), strict=True))

@@ -207,9 +207,9 @@ def find_rigid_pairs(state, rigid, reach, box):
 
 @kernel
 def changed_sides(before, after, rigid, box):
-    """True for the listed pairs of which the grain is on the other side of an edge after than before, and beside it both times.
+    """True for the listed pairs of which the grain, on the straight way from before to after, has crossed an edge.
 
-    ``before`` and ``after`` (5 or 6, N). Nearer together than the list's reach, no path leads around the edge's end.
+    ``before`` and ``after`` (5 or 6, N), nearer together than the list's reach: over so little any way is straight.
     """
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     used = rigid.used[0]
@@ -227,9 +227,10 @@ def changed_sides(before, after, rigid, box):
         later_y = dy + after[1, i] - before[1, i]
         along = dx * ux + dy * uy
         later = later_x * ux + later_y * uy
-        beside = along >= 0.0 and along <= length and later >= 0.0 and later <= length
         then, now = ux * dy - uy * dx, ux * later_y - uy * later_x
-        changed[k] = beside and (then >= 0.0) != (now >= 0.0)
+        if (then >= 0.0) != (now >= 0.0):
+            crossing = along + (later - along) * then / (then - now)
+            changed[k] = crossing >= 0.0 and crossing <= length
     return changed
 
 
