@@ -8,9 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
-from core.files import atomic_write
 from sandbox.studies.figures import STYLE, plain_numbers
+from sandbox.studies.table import write_bytes
 
 Summary = Mapping[str, Any]
 Points = Sequence[tuple[float, float]]
@@ -75,12 +74,7 @@ def _draw(title: str, panels: Sequence[Callable[[Any], None]], path: Path) -> No
         for place, panel in enumerate(panels):
             panel(canvas.add_subplot(1, len(panels), place + 1))
         canvas.savefig(picture, format="png", dpi=RESOLUTION)
-    try:
-        with atomic_write(path) as file:
-            file.write(picture.getvalue())
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"cannot write {path}: {reason}") from error
+    write_bytes(path, picture.getvalue())
 
 
 def _points(dots: Iterable[Mapping[str, Any]]) -> Points:

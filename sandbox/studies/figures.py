@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import io
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
-from core.files import atomic_write
 from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
 from sandbox.studies.paper_claims import Figure, Line, Panel
 from sandbox.studies.runs import Result
+from sandbox.studies.table import write_bytes
 
 COLOURS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED, "other": 0x555555}
 # Shape tells kinds apart where colour does not.
@@ -53,13 +51,7 @@ def draw(figure: Figure, results: Sequence[Result], path: Path) -> None:
         for place, panel in enumerate(panels):
             _draw_panel(canvas.add_subplot(down, across, place + 1), panel)
         canvas.savefig(picture, format="png", dpi=RESOLUTION)
-    try:
-        with atomic_write(path) as file:
-            file.write(picture.getvalue())
-    except OSError as error:
-        raise InputError(
-            f"cannot write {os.fspath(path)}: {(error.strerror or str(error)).lower()}"
-        ) from error
+    write_bytes(path, picture.getvalue())
 
 
 def _draw_panel(axes: Any, panel: Panel) -> None:

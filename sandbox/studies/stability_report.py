@@ -13,11 +13,10 @@ from typing import Any
 import numpy as np
 
 from core.elasticity import GUARD_AREA
-from core.errors import InputError
-from core.files import atomic_write
 from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
 from sandbox.studies.figures import RESOLUTION, STYLE
 from sandbox.studies.stability_case import FAILS, HOLDS, NOT_SOLVED, Outcome
+from sandbox.studies.table import write_bytes
 
 FORMAT, VERSION = "auxetic-sandbox stability", 1
 KINDS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED}
@@ -271,9 +270,4 @@ def _canvas(size: tuple[float, float]) -> Any:
 def _save(canvas: Any, path: Path) -> None:
     picture = io.BytesIO()
     canvas.savefig(picture, format="png", dpi=RESOLUTION)
-    try:
-        with atomic_write(path) as file:
-            file.write(picture.getvalue())
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"cannot write {path}: {reason}") from error
+    write_bytes(path, picture.getvalue())

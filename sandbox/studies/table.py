@@ -143,9 +143,14 @@ def finite(value: Any) -> Any:
 
 def write_text(path: Path, text: str) -> None:
     """Write a file whole or not at all. Raises InputError if it cannot be written."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    """As ``write_text``, of anything."""
     try:
         with atomic_write(path) as file:
-            file.write(text.encode())
+            file.write(content)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(f"cannot write {path}: {reason}") from error
