@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import pygame
 import pytest
@@ -11,7 +10,6 @@ import pytest
 from sandbox import language, tours
 from sandbox.draw import words
 from sandbox.draw.help_page import draw_help
-from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
 from sandbox.draw.tour_card import TourPage, card_layout, draw_tour_card
@@ -28,22 +26,6 @@ def german() -> Iterator[None]:
     language.use("de")
     yield
     language.use(language.SOURCE)
-
-
-@pytest.fixture
-def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
-    """Every text that is drawn, and its place."""
-    written: list[tuple[str, pygame.Rect]] = []
-    original = Painter.text
-
-    def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
-        place = original(self, content, x, y, **more)
-        if content:
-            written.append((content, place))
-        return place
-
-    monkeypatch.setattr(Painter, "text", text)
-    return written
 
 
 def nothing_cut(texts: list[tuple[str, pygame.Rect]], window: tuple[int, int]) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import pygame
 import pytest
@@ -17,7 +16,6 @@ from sandbox.draw.help_page import draw_help
 from sandbox.draw.layout import SEAM, layout
 from sandbox.draw.menu_layout import SCENE, Card, Chip, Contents, menu_layout
 from sandbox.draw.menu_page import draw_menu
-from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.splash import draw_splash
 from sandbox.draw.text import Type
@@ -79,22 +77,6 @@ def test_layout_fills_the_window_without_overlap(
     assert places.canvas.height >= 0.4 * size[1]
     assert sum(rect.width for rect in places.canvases) >= 0.5 * size[0]
     assert places.status.height > 0
-
-
-@pytest.fixture
-def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
-    """Every text that is drawn, and its place."""
-    written: list[tuple[str, pygame.Rect]] = []
-    original = Painter.text
-
-    def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
-        place = original(self, content, x, y, **more)
-        if content:
-            written.append((content, place))
-        return place
-
-    monkeypatch.setattr(Painter, "text", text)
-    return written
 
 
 def check(texts: list[tuple[str, pygame.Rect]], window: pygame.Rect) -> None:

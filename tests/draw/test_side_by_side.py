@@ -60,22 +60,6 @@ def earlier(count: int) -> list[Any]:
     return [kept_curve(kept) for kept in curves.entries]
 
 
-@pytest.fixture
-def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
-    """Every text that is drawn, and its place."""
-    written: list[tuple[str, pygame.Rect]] = []
-    original = Painter.text
-
-    def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
-        place = original(self, content, x, y, **more)
-        if content:
-            written.append((content, place))
-        return place
-
-    monkeypatch.setattr(Painter, "text", text)
-    return written
-
-
 @pytest.mark.parametrize("size", SIZES, ids=str)
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("count", [2, 3])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 import pygame
@@ -15,7 +14,6 @@ from sandbox.commands import Protocol
 from sandbox.draw import words
 from sandbox.draw.layout import layout
 from sandbox.draw.legend import draw_header
-from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.theme import DARK, LIGHT, Theme, channels, contrast
 from sandbox.draw.views import KIND, VIEWS, area_lost, motion, shape, view_after, view_named
@@ -142,22 +140,6 @@ def test_scale_grows_at_once_and_is_forgotten() -> None:
     assert not np.array_equal(first, renderer.image(frame))
     renderer.forget()
     assert np.array_equal(first, renderer.image(frame))
-
-
-@pytest.fixture
-def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
-    """Every text that is drawn, and its place."""
-    written: list[tuple[str, pygame.Rect]] = []
-    original = Painter.text
-
-    def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
-        place = original(self, content, x, y, **more)
-        if content:
-            written.append((content, place))
-        return place
-
-    monkeypatch.setattr(Painter, "text", text)
-    return written
 
 
 @pytest.mark.parametrize("chains", [False, True])

@@ -1,12 +1,13 @@
-"""Windows of tests know nothing of what the person at this computer has left unfinished."""
+"""Windows of tests need no screen, speak English, and know nothing of what the person at this computer has left unfinished."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from sandbox import autosave
+from sandbox import autosave, language
 
 
 @pytest.fixture(autouse=True)
@@ -17,3 +18,13 @@ def own_autosaves(
     place = tmp_path_factory.mktemp("autosave")
     monkeypatch.setattr(autosave, "folder", lambda: place)
     return place
+
+
+@pytest.fixture(autouse=True)
+def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Drivers that show and play nothing; English before and after, whatever a test switches to."""
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+    language.use(language.SOURCE)
+    yield
+    language.use(language.SOURCE)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
 from pathlib import Path
 
 import pygame
 import pytest
 
-from sandbox import language
 from tests.window.desk import Desk
 
 SPECIAL = (
@@ -31,13 +29,8 @@ SIGNS = " 0123456789abcefhiklmnprstvyz-,.[]+"  # no film, no sound, no scene fil
 
 
 @pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+def own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    language.use("en")
-    yield
-    language.use("en")
 
 
 def some_key(chance: random.Random, desk: Desk) -> None:

@@ -30,14 +30,6 @@ class LeftBehind:
         self.removed = True
 
 
-@pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-    yield
-    language.use(language.SOURCE)
-
-
 @pytest.fixture
 def left(monkeypatch: pytest.MonkeyPatch) -> list[LeftBehind]:
     found = [LeftBehind(12.0), LeftBehind(300.0)]

@@ -15,15 +15,6 @@ from sandbox.window.edit import Edit
 from tests.window.desk import Desk
 
 
-@pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-    language.use("en")
-    yield
-    language.use("en")
-
-
 @pytest.fixture
 def desk() -> Iterator[Desk]:
     place = Desk((1024, 720))

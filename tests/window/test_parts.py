@@ -11,7 +11,6 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox import language
 from sandbox.commands import (
     Change,
     Command,
@@ -34,15 +33,6 @@ from sandbox.frame import Contacts
 from sandbox.history import Event
 from sandbox.window import timeline
 from tests.window.desk import Desk
-
-
-@pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-    language.use("en")
-    yield
-    language.use("en")
 
 
 @pytest.fixture

@@ -16,12 +16,6 @@ from sandbox.window.tour import Guide
 from tests.window.desk import Desk
 
 
-@pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-
-
 @pytest.fixture
 def desk() -> Iterator[Desk]:
     place = Desk((1000, 700))

@@ -5,10 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pygame
 import pytest
@@ -18,77 +16,8 @@ from sandbox import language
 from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
 from sandbox.draw import words
 from sandbox.window import display
-from sandbox.window.app import App
-from sandbox.window.run import Run
 from scenes import registry
-from tests.window.fake_session import FakeSession
-
-
-@pytest.fixture(autouse=True)
-def no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
-
-
-class Desk:
-    """A window, the sessions made for it, and a person at it."""
-
-    def __init__(self) -> None:
-        self.sessions: list[FakeSession] = []
-        self.app = App(Run("mixed", 1, self._make), size=(800, 600), scale=1.0)
-
-    def _make(self, *arguments: Any) -> Any:
-        session = FakeSession(*arguments)
-        self.sessions.append(session)
-        return session
-
-    @property
-    def session(self) -> FakeSession:
-        return self.sessions[-1]
-
-    def page(self) -> str:
-        if not self.app.running:
-            return "closed"
-        return "menu" if self.app.show_menu else "help" if self.app.show_help else "run"
-
-    def paused(self) -> bool:
-        return self.app.run.paused
-
-    def start(self) -> None:
-        self.app.start("intruder")
-        self.until(lambda: not self.app._splash)
-
-    def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
-        patience = time.perf_counter() + seconds
-        while not condition():
-            assert time.perf_counter() < patience, "waited in vain"
-            self.app.tick()
-
-    def post(self, kind: int, **more: Any) -> None:
-        pygame.event.post(pygame.event.Event(kind, more))
-        self.app.tick()
-
-    def key(self, key: int, unicode: str = "") -> None:
-        sign = unicode or (chr(key) if 32 <= key < 127 else "")
-        self.post(pygame.KEYDOWN, key=key, unicode=sign, mod=0)
-
-    def point(self, place: tuple[float, float], pressed: bool = False) -> None:
-        pos = (round(place[0]), round(place[1]))
-        self.post(pygame.MOUSEMOTION, pos=pos, rel=(0, 0), buttons=(int(pressed), 0, 0))
-
-    def press(self, place: tuple[float, float]) -> None:
-        pos = (round(place[0]), round(place[1]))
-        self.post(pygame.MOUSEBUTTONDOWN, pos=pos, button=1)
-
-    def release(self, place: tuple[float, float]) -> None:
-        pos = (round(place[0]), round(place[1]))
-        self.post(pygame.MOUSEBUTTONUP, pos=pos, button=1)
-
-    def handle_place(self) -> tuple[float, float]:
-        frame = self.app.run.snapshot.frame
-        assert frame is not None
-        handle = frame.handles[0]
-        return self.app.renderer.camera.to_screen(handle.x, handle.y)
+from tests.window.desk import Desk
 
 
 @pytest.fixture
