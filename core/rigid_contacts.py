@@ -76,6 +76,16 @@ def beyond(s, u, v, dx, dy, ux, uy):
 
 
 @kernel
+def far_inside(along, s, u, v):
+    """True only if a grain whose centre is ``along`` [R] inside the end of an edge cannot have its contact beyond it.
+
+    The contact lies no further from the centre than the longer semi-axis, whose square s + √(u² + v²) is no more than
+    s + |u| + |v|: no root and no division for the many grains that no end concerns.
+    """
+    return along > 0.0 and along * along > s + abs(u) + abs(v)
+
+
+@kernel
 def nearest_direction(s, u, v, dx, dy):
     """Unit vector n that minimises h(n) − n·d, by Newton from the centre line. Returns (nx, ny)."""
     r = math.sqrt(dx * dx + dy * dy)
@@ -127,13 +137,17 @@ def touch(primitives, m, x, y, s, u, v):
         overlap = h + radius - side * distance
         if overlap <= 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
-        if beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
+        near = not far_inside(dx * ux + dy * uy, s, u, v)
+        if near and beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
-        if beyond(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
+        dx = x - primitives[m, 5]
+        dy = y - primitives[m, 6]
+        near = not far_inside(-dx * ux - dy * uy, s, u, v)
+        if near and beyond(s, u, v, dx, dy, ux, uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
         return overlap, nx, ny, h, 0.0
-    r = math.sqrt(dx * dx + dy * dy)
     if kind == DISC:
+        r = math.sqrt(dx * dx + dy * dy)
         if r == 0.0:  # any direction is as good as any other
             h, _ = support(s, u, v, 1.0, 0.0)
             return h + radius, 1.0, 0.0, h, 0.0
@@ -141,7 +155,9 @@ def touch(primitives, m, x, y, s, u, v):
         ny = dy / r
         h, slope = support(s, u, v, nx, ny)
         return h + radius - r, nx, ny, h, slope / r
-    if beyond(s, u, v, dx, dy, primitives[m, 3], primitives[m, 4]) <= 0.0:
+    ux = primitives[m, 3]
+    uy = primitives[m, 4]
+    if far_inside(-dx * ux - dy * uy, s, u, v) or beyond(s, u, v, dx, dy, ux, uy) <= 0.0:
         return -1.0, 0.0, 0.0, 1.0, 0.0
     wx = primitives[m, 5]
     wy = primitives[m, 6]

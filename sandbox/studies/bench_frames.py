@@ -21,7 +21,8 @@ from scenes import registry
 
 BUDGET = 12e-3  # [s] of solver time a frame
 BALANCED, MEDIAN = 3e-2, 1e-2  # relative residuals
-SLICE = 25  # iterations between two looks at the clock
+SLICE = 200  # iterations between two looks at the clock, as in the window; fewer where the budget runs out
+LEAST_SLICE = 10
 STEP = 0.05  # [R] = 3 R/s over 60 frames a second
 PACKINGS = ("regular", "mixed", "auxetic")
 OTHERS = 0.4  # of the frames, for scenes without a target
@@ -77,21 +78,31 @@ def drag(session: Session, frames: int, *, budget: float = BUDGET) -> Drag:
     residuals, iterations, seconds, late = [], [], [], 0
     for _ in range(frames):
         start = clock()
-        done = session.advance(SLICE)
+        done = session.advance(LEAST_SLICE)
         if not done and session.idle:
             break  # the end of the script
-        while not done and clock() - start < budget:
-            done = session.advance(SLICE)
+        begun, count = clock(), 0
+        while not done and (now := clock()) - start < budget:
+            done = session.advance(slice_that_fits(start + budget - now, now - begun, count))
+            under_way = engine.progress()
+            count = 0 if under_way is None else under_way.iterations - LEAST_SLICE
         under_way = engine.progress()
         row = session.history[len(session.history) - 1]
         residuals.append(row.residual if under_way is None else under_way.residual)
         while not done:
-            done = session.advance(10 * SLICE)
+            done = session.advance(SLICE)
         row = session.history[len(session.history) - 1]
         iterations.append(row.iterations)
         seconds.append(clock() - start)
         late += row.stop_reason != "converged"
     return Drag(grains, tuple(residuals), tuple(iterations), tuple(seconds), late)
+
+
+def slice_that_fits(left: float, seconds: float, iterations: int) -> int:
+    """Iterations for the next slice: no more than there is time ``left`` for [s], as ``iterations`` took ``seconds`` so far."""
+    if iterations <= 0:
+        return LEAST_SLICE
+    return max(LEAST_SLICE, min(SLICE, int(left * iterations / seconds)))
 
 
 def measure(case: Case, packing: str, frames: int) -> dict[str, Any] | None:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
+import platform
 import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
+import numba
 import numpy as np
 import pytest
+from llvmlite import binding
 
 from core import jit
 
@@ -81,3 +85,39 @@ def test_noalias_is_a_promise_not_another_result() -> None:
     jit.kernel(cache=False, noalias=True)(update)(x, v, promised)
     assert np.array_equal(plain, promised)
     assert plain == pytest.approx(x + 0.1 * v, rel=1e-15, abs=1e-15)
+
+
+@pytest.mark.skipif(
+    platform.machine().lower() not in {"x86_64", "amd64"} or binding.llvm_version_info < (18,),
+    reason="nothing to ask for: another processor, or an LLVM that cannot be asked",
+)
+def test_scattered_values_are_loaded_one_by_one() -> None:
+    """The pair forces vectorise, and without the gather instruction, which is the slower way."""
+    config: Any = numba.config
+    assert jit.NO_GATHER in config.CPU_FEATURES.split(",")
+
+    def pick(chosen, values, out):  # type: ignore[no-untyped-def]
+        for i in range(chosen.shape[0]):
+            out[i] = 2.0 * values[chosen[i]]
+
+    picking = jit.kernel(cache=False, noalias=True)(pick)
+    chosen = np.random.default_rng(1).integers(0, 50, 101).astype(np.uint32)
+    values, out = np.arange(50.0), np.zeros(101)
+    picking(chosen, values, out)
+    assert np.array_equal(out, 2.0 * chosen)
+    (code,) = picking.inspect_asm().values()
+    assert "vgather" not in code
+
+
+def test_features_that_somebody_asked_for_are_left_alone() -> None:
+    program = "import numba; from core import jit; print(numba.config.CPU_FEATURES)"
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=REPOSITORY,
+        env={**os.environ, "NUMBA_CPU_FEATURES": "+sse2"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    assert done.stdout.strip() == "+sse2"

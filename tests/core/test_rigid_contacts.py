@@ -14,7 +14,7 @@ from core import observables, reference
 from core.packing import Packing
 from core.relaxation import Relaxation
 from core.rigid import RigidBody
-from core.rigid_contacts import EDGE, VERTEX
+from core.rigid_contacts import EDGE, VERTEX, beyond, far_inside
 from tests.core import examples
 
 STIFFNESS = 50.0
@@ -53,6 +53,30 @@ def around(corners: list[Vector], at: int, radius: float, steps: int) -> list[tu
         *((tuple(corner), first + s * turn) for s in np.linspace(0.0, 1.0, steps)),
         *((tuple(corner + s * (after - corner)), second) for s in np.linspace(1e-3, 0.4, steps)),
     ]
+
+
+@FEW
+@given(
+    st.floats(0.2, 2.0),
+    st.floats(0.05, 1.0),
+    st.floats(0.0, math.pi),
+    st.floats(-math.pi, math.pi),
+    st.floats(-4.0, 4.0),
+    st.floats(-3.0, 3.0),
+)
+def test_a_grain_far_inside_an_edge_is_not_beyond_its_end(
+    a: float, share: float, tilt: float, direction: float, along: float, off: float
+) -> None:
+    """The short way asks for no root, and never says otherwise than the long one; far enough inside it does answer."""
+    packing = grain(a, share * a, tilt)
+    s, u, v = (float(c[0]) for c in observables.support_coefficients(packing))
+    ux, uy = math.cos(direction), math.sin(direction)
+    dx, dy = along * ux - off * uy, along * uy + off * ux
+    inside = -(dx * ux + dy * uy)
+    if far_inside(inside, s, u, v):
+        assert beyond(s, u, v, dx, dy, ux, uy) < 0.0
+    else:
+        assert inside <= math.sqrt(2.0) * a * (1.0 + 1e-12)
 
 
 POLYGON: list[Vector] = [(0.0, 0.0), (6.0, -1.0), (7.0, 4.0), (2.0, 6.0)]

@@ -262,6 +262,21 @@ def test_a_drag_without_time_still_finishes_its_increments() -> None:
     assert hashes[0] == hashes[1]
 
 
+@pytest.mark.parametrize(
+    ("left", "seconds", "iterations", "expected"),
+    [
+        (10e-3, 0.0, 0, bench_frames.LEAST_SLICE),  # nothing is known of the pace yet
+        (10e-3, 1e-3, 1000, bench_frames.SLICE),  # plenty of time: no more than a slice
+        (1e-3, 1e-3, 100, 100),
+        (1e-6, 1e-3, 100, bench_frames.LEAST_SLICE),
+    ],
+)
+def test_slices_get_shorter_as_the_budget_runs_out(
+    left: float, seconds: float, iterations: int, expected: int
+) -> None:
+    assert bench_frames.slice_that_fits(left, seconds, iterations) == expected
+
+
 def test_shares_count_nan_as_worst() -> None:
     found = bench_frames.Drag(1, (1e-3, math.nan, 2e-2, 5e-2), (1,) * 4, (0.0,) * 4, 1)
     assert found.share == 0.5
