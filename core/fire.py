@@ -1,8 +1,7 @@
 """FIRE: the inertial minimiser that relaxes a packing to mechanical equilibrium.
 
-Bitzek et al., doi:10.1103/PhysRevLett.97.170201, with the half step back and the bounds of FIRE 2.0, Guénolé et al.,
-doi:10.1016/j.commatsci.2020.109584, and velocity-Verlet ordering. The grains are given inertia and pushed downhill; velocity is
-turned towards the force, and thrown away as soon as it points uphill.
+Bitzek et al., doi:10.1103/PhysRevLett.97.170201, in velocity-Verlet order. The grains are given inertia and pushed downhill;
+velocity is turned towards the force, and thrown away where it no longer goes downhill (``core.steering``).
 
 Inertia is a preconditioner here, not physics: dt is fixed by the contact stiffness, dt_max = DT_FACTOR √(1/C), and a degree of
 freedom that is stiffer than a contact is made heavier in proportion (``inverse_mass``). So nothing is tuned by hand per scene.
@@ -13,7 +12,6 @@ same steps to the last bit.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -25,23 +23,19 @@ from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
-from core.sweeps import CHUNK, add, collapsed, drift, farthest, largest, permute
+from core.steering import steer
+from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
 
 DT_FACTOR = 0.6  # of √(m / C k); velocity Verlet is stable to about 0.7
-DT_START, DT_SHRINK_FLOOR = 0.25, 1e-3  # first and least dt, as a fraction of dt_max
-ALPHA_START, ALPHA_DECAY = 0.1, 0.99
-DT_GROW, DT_SHRINK, DELAY = 1.1, 0.5, 5
 SHAPE_MASS = 4.0  # inertia of p, q1, q2 relative to x, y
-HALF_STEP_BACK = True
 SCALE_EVERY = 50  # iterations between looks at the mean contact force
 
 # Slots of Minimizer.control.
 (
     DT,
     ALPHA,
-    DOWNHILL,
     KEEP,
     PUSH,
     MOVED,
@@ -53,7 +47,8 @@ SCALE_EVERY = 50  # iterations between looks at the mean contact force
     PENDING,
     FASTEST,
     START_ENERGY,
-) = range(14)
+) = range(13)
+SLOTS = 13
 
 
 class Grains(NamedTuple):
@@ -82,7 +77,7 @@ class Minimizer(NamedTuple):
     identity: NDArray[np.int64]  # (N,) place of each grain in the packing
     scratch: NDArray[np.float64]  # (N,)
     scratch_identity: NDArray[np.int64]  # (N,)
-    control: NDArray[np.float64]  # (14,)
+    control: NDArray[np.float64]  # (SLOTS,)
 
 
 class Weight(NamedTuple):
@@ -321,26 +316,7 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
         if control[RESIDUAL] <= limits.tolerance:
             # Asked here only: a grain that is flat on the way is pushed back by the guard of its area.
             return COLLAPSED if collapsed(m.state) else CONVERGED, iteration + 1
-        if power > 0.0:
-            control[DOWNHILL] += 1.0
-            alpha = control[ALPHA]
-            control[KEEP] = 1.0 - alpha
-            mix = alpha * math.sqrt(speed_square / force_square)
-            if control[DOWNHILL] > DELAY:
-                dt = min(dt * DT_GROW, limits.dt_max)
-                control[ALPHA] = alpha * ALPHA_DECAY
-        else:
-            control[DOWNHILL] = 0.0
-            control[ALPHA] = ALPHA_START
-            if HALF_STEP_BACK:
-                bits[FASTEST] = largest(velocity.view(np.int64))
-                fastest = control[FASTEST]
-                back = 0.5 * dt if 0.5 * fastest * dt <= limits.clamp else limits.clamp / fastest
-                drift(state, velocity, -back)
-                control[MOVED] += 4.0 * back * fastest
-            dt = max(dt * DT_SHRINK, DT_SHRINK_FLOOR * limits.dt_max)
-            control[KEEP] = 0.0
-            mix = 0.0
-        control[DT] = dt
-        control[PUSH] = mix + 0.5 * dt
+        control[DT], control[ALPHA], control[KEEP], control[PUSH] = steer(
+            power, force_square, speed_square, dt, control[ALPHA], limits.dt_max
+        )
     return BUDGET, max_iterations

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, neighbors, rigid_contacts
+from core import fire, neighbors, rigid_contacts, steering
 from core.errors import InputError
 from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
 from core.material import area_modulus, deformation_stiffness, shape_modulus
@@ -125,8 +125,8 @@ class Relaxation:
             skin=skin * largest,
         )
         control = self._minimizer.control
-        control[fire.DT] = fire.DT_START * self._limits.dt_max
-        control[fire.ALPHA] = fire.ALPHA_START
+        control[fire.DT] = steering.DT_START * self._limits.dt_max
+        control[fire.ALPHA] = steering.ALPHA_START
         control[fire.PENDING] = 1.0
         control[fire.START_ENERGY] = np.nan if count else 0.0
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
@@ -267,5 +267,5 @@ def _minimizer(packing: Packing, spins: bool) -> fire.Minimizer:
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),
-        control=np.zeros(14),
+        control=np.zeros(fire.SLOTS),
     )

@@ -308,7 +308,7 @@ SOLVER = (
     ),
     Parameter(
         "max_iterations",
-        8000,
+        20_000,
         "",
         10,
         1_000_000,

@@ -15,10 +15,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, sweeps
+from core import fire, steering, sweeps
 from core.jit import kernel
 from core.problem import Problem
 from core.relaxation import Relaxation
+from core.steering import steer
 
 Floats = NDArray[np.float64]
 
@@ -111,27 +112,9 @@ def run(
             control[fire.SCALE] = max(fire.mean_contact_force(m, box, rigid), limits.force_floor)
         if largest_force <= limits.tolerance * control[fire.SCALE]:
             return fire.CONVERGED, iteration + 1
-        if power > 0.0:
-            control[fire.DOWNHILL] += 1.0
-            alpha = control[fire.ALPHA]
-            control[fire.KEEP] = 1.0 - alpha
-            mix = alpha * math.sqrt(speed_square / force_square)
-            if control[fire.DOWNHILL] > fire.DELAY:
-                dt = min(dt * fire.DT_GROW, limits.dt_max)
-                control[fire.ALPHA] = alpha * fire.ALPHA_DECAY
-        else:
-            control[fire.DOWNHILL] = 0.0
-            control[fire.ALPHA] = fire.ALPHA_START
-            bits[fire.FASTEST] = sweeps.largest(speed.view(np.int64))
-            fastest = control[fire.FASTEST]
-            back = 0.5 * dt if 0.5 * fastest * dt <= limits.clamp else limits.clamp / fastest
-            sweeps.drift(flat, speed, -back)
-            to_smooth(chart, m.state)
-            dt = max(dt * fire.DT_SHRINK, fire.DT_SHRINK_FLOOR * limits.dt_max)
-            control[fire.KEEP] = 0.0
-            mix = 0.0
-        control[fire.DT] = dt
-        control[fire.PUSH] = mix + 0.5 * dt
+        control[fire.DT], control[fire.ALPHA], control[fire.KEEP], control[fire.PUSH] = steer(
+            power, force_square, speed_square, dt, control[fire.ALPHA], limits.dt_max
+        )
     return fire.BUDGET, most
 
 
@@ -146,8 +129,8 @@ def paper_chart(
     to_chart(m.state, chart)
     velocity, turned = np.zeros_like(chart), np.zeros_like(chart)
     control = np.zeros_like(m.control)
-    control[fire.DT] = fire.DT_START * limits.dt_max
-    control[fire.ALPHA] = fire.ALPHA_START
+    control[fire.DT] = steering.DT_START * limits.dt_max
+    control[fire.ALPHA] = steering.ALPHA_START
     control[fire.PENDING] = 1.0
     left = most
     while True:

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, neighbors
+from core import fire, neighbors, steering
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import PeriodicBox
@@ -110,7 +110,7 @@ def minimizer(discs: SoftDiscs) -> fire.Minimizer:
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),
-        control=np.zeros(14),
+        control=np.zeros(fire.SLOTS),
     )
 
 
@@ -124,8 +124,8 @@ def relax(discs: SoftDiscs) -> Relaxed:
     dt_max = fire.DT_FACTOR
     # The tolerance looks at shapes too, whose forces do not vanish here: the discs' own are looked at between slices.
     limits = fire.Limits(1e-30, 1.0, dt_max, 0.1 / SIZE_RATIO, SKIN)
-    m.control[fire.DT] = fire.DT_START * dt_max
-    m.control[fire.ALPHA] = fire.ALPHA_START
+    m.control[fire.DT] = steering.DT_START * dt_max
+    m.control[fire.ALPHA] = steering.ALPHA_START
     m.control[fire.PENDING] = 1.0
     m.control[fire.START_ENERGY] = np.nan
     iterations, largest, due = 0, math.inf, 0
