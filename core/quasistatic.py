@@ -199,6 +199,10 @@ class Quasistatic:
         self._moved, self._stopped = {}, {}
         if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
             self._contacts = None
+        if self._relaxes:
+            # Before anything moves: a prediction that flattens a grain would make it look deep already.
+            touched = (self._contacts or self.contacts())[1]
+            self._deep = deep_grains(self.packing, touched, self.settings.step)
         self._placement = self.world.placement()
         rows_then = self.world.primitives()[0]
         for name, target in targets.items():
@@ -220,9 +224,7 @@ class Quasistatic:
             self._predict()
         primitives, _ = self.world.primitives()
         if self._relaxes:
-            touched = (self._contacts or self.contacts())[1]
             ways = self._start, self.packing.state, rows_then, primitives
-            self._deep = deep_grains(self.packing, touched, self.settings.step)
             self._through = passed_faces(touched, *ways)
         settings = self.settings
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0

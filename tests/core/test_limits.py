@@ -7,6 +7,7 @@ import pytest
 
 from core.errors import InputError
 from core.packing import Packing, PeriodicBox
+from core.passage import deep_grains
 from core.quasistatic import Increment, Quasistatic, Settings
 from core.relaxation import FAILED, Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
@@ -14,7 +15,7 @@ from core.rigid import RigidBody, RigidWorld
 PLATE = ((-3.0, 0.0), (3.0, 0.0), (3.0, 1.0), (-3.0, 1.0))
 
 
-def press(stiffness: float) -> Quasistatic:
+def press(stiffness: float, step: float = 0.05) -> Quasistatic:
     """A grain of radius 1 on a floor at y = 0, a lid over it that nothing stops."""
     lid = RigidBody(
         "lid",
@@ -25,7 +26,8 @@ def press(stiffness: float) -> Quasistatic:
         force_limit=1e9,
     )
     floor = RigidBody("floor", segments=[(-4.0, -0.5, 4.0, -0.5, 0.5)])
-    return Quasistatic(Packing([0.0], [1.0], 1.0, 0.8, stiffness), RigidWorld([lid, floor]))
+    packing = Packing([0.0], [1.0], 1.0, 0.8, stiffness)
+    return Quasistatic(packing, RigidWorld([lid, floor]), Settings(step=step))
 
 
 def increment(engine: Quasistatic, y: float) -> Increment:
@@ -50,6 +52,17 @@ def test_a_lid_never_presses_a_grain_through_the_floor(stiffness: float) -> None
     assert done.moved["lid"] != (0.0, 0.0)
     for _ in range(3):
         assert increment(engine, 3.0).report.reason is StopReason.CONVERGED
+
+
+@pytest.mark.parametrize("step", [0.02, 0.05, 0.15, 0.25])
+def test_no_increment_that_is_kept_has_pressed_a_grain_as_deep_as_one_step_from_through(
+    step: float,
+) -> None:
+    """Not only the last of them: what is deep when the next one begins would pass for having been so before."""
+    engine = press(50.0, step)
+    while (done := increment(engine, -1.0)).report.reason not in FAILED:
+        assert deep_grains(engine.packing, done.body_contacts, step) == set()
+    assert done.report.reason is StopReason.SUNK
 
 
 def test_a_grain_that_is_in_a_wall_already_is_let_out() -> None:
