@@ -290,11 +290,12 @@ MATERIAL = (
 FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leaves the term out"
 # Increment and tolerance, for play and record alike, come from the work-precision plots of `study accuracy`, see
 # assets/studies/accuracy. At 1e-2 the force that a hand feels is off by as much as the model is (2 % with C = 50 against hard
-# contacts, up to 2.7 % by the contact law) in the press, the shear cell, the shrinking box and both hoppers; with friction the
-# increment is to blame for that, and no tolerance helps. Ten times tighter costs 1.7 to 4 times the time. The intruder's path
-# bifurcates within an increment or two: single forces mean little there, their mean is within 8 % (seeds differ by 12 %), and
-# 1e-3 (2 %) takes three pictures an increment instead of one. Where 1e-2 is not enough and more is cheap, the scene says so
-# (avalanches). Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a measurement.
+# contacts, up to 2.1 % by the contact law) in the press, the shear cell, the shrinking box and both hoppers; with friction the
+# increment is to blame for that, and no tolerance helps. Ten times tighter costs 1.7 to 3.3 times the time. The intruder's path
+# bifurcates within a few increments: up to there the force is within 5 %, beyond it single forces mean little and their mean over
+# seeds is within 4 %; 1e-3 takes one and a half pictures an increment instead of a half. Where 1e-2 is not enough and more is
+# cheap, the scene says so (avalanches). Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a
+# measurement.
 SOLVER = (
     Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment", live=True),
     Parameter(
