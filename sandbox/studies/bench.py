@@ -29,12 +29,13 @@ class Plan:
     frames: int
     drawing_seconds: float
     repeats: int
+    starts: int
     cold: bool
     threads_seconds: float  # 0: not looked at, since its kernels are compiled for nobody else
 
 
-FULL = Plan(12.0, 30.0, 150, 3.0, 3, cold=True, threads_seconds=18.0)
-QUICK = Plan(2.0, 3.0, 15, 1.0, 1, cold=False, threads_seconds=0.0)
+FULL = Plan(12.0, 30.0, 150, 3.0, 3, 10, cold=True, threads_seconds=18.0)
+QUICK = Plan(2.0, 3.0, 15, 1.0, 1, 1, cold=False, threads_seconds=0.0)
 
 
 def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
@@ -42,7 +43,7 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     plan = QUICK if quick else FULL
     yield lambda: bench_startup.section(repeats=plan.repeats, cold=plan.cold)
     yield lambda: bench_kernels.section(seconds=plan.kernel_seconds)
-    yield lambda: bench_peers.section(peers=peers, repeats=plan.repeats)
+    yield lambda: bench_peers.section(peers=peers, repeats=plan.repeats, starts=plan.starts)
     yield lambda: bench_scaling.section(quick=quick, seconds=plan.scaling_seconds)
     if plan.threads_seconds > 0.0:
         yield lambda: bench_threads.section(seconds=plan.threads_seconds)

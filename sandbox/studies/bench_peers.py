@@ -1,4 +1,7 @@
-"""This program and others on the same file of soft discs; each peer in a process of its own, on one core."""
+"""This program and others on the same files of soft discs; each peer in a process of its own, on one core.
+
+Several files: from one start to the next the number of iterations scatters by a factor of two or three, whoever minimises.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from typing import Any
 from sandbox.studies import soft_discs
 from sandbox.studies.bench_report import Row, Section, at_most
 
-COUNT = 1000
+COUNT, STARTS = 1000, 10
 TARGET = 0.6  # of LAMMPS's time, for an iteration and for the whole
 NAMES = {"lammps": "LAMMPS FIRE", "ase": "ASE FIRE", "scipy": "SciPy L-BFGS-B"}
 PATIENCE = 300.0  # [s] for one peer
@@ -45,33 +48,56 @@ def best(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return min(runs, key=lambda run: run["seconds"])
 
 
-def section(*, peers: bool, repeats: int, count: int = COUNT) -> Section:
-    """Soft discs: this program, and with ``peers`` the others."""
-    discs = soft_discs.random_discs(count, seed=1)
-    soft_discs.relax(discs)  # compiles, or loads what is compiled
-    own = [soft_discs.relax(discs).data() for _ in range(repeats)]
-    found: dict[str, list[dict[str, Any]]] = {}
-    if peers:
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "soft-discs.npz"
+def together(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Runs from several starts as one."""
+    seconds = sum(run["seconds"] for run in runs)
+    iterations = sum(run["iterations"] for run in runs)
+    return {
+        "seconds": seconds,
+        "iterations": iterations,
+        "iteration_us": 1e6 * seconds / max(iterations, 1),
+        "largest_force": max(run["largest_force"] for run in runs),
+    }
+
+
+def section(*, peers: bool, repeats: int, starts: int = STARTS, count: int = COUNT) -> Section:
+    """Soft discs: this program, and with ``peers`` the others; the fastest of ``repeats`` runs from each start."""
+    soft_discs.relax(soft_discs.random_discs(count, seed=1))  # compiles, or loads what is compiled
+    own: list[dict[str, Any]] = []
+    found: dict[str, list[dict[str, Any]]] = {name: [] for name in NAMES if peers}
+    with tempfile.TemporaryDirectory() as folder:
+        for seed in range(1, starts + 1):
+            discs = soft_discs.random_discs(count, seed)
+            path = Path(folder) / f"soft-discs-{seed}.npz"
             soft_discs.write(path, discs)
-            for name in NAMES:
-                found[name] = ask(name, path, repeats)
-                own += [soft_discs.relax(discs).data() for _ in range(repeats)]
+            mine = [soft_discs.relax(discs).data() for _ in range(repeats)]
+            for name, runs in found.items():
+                if runs and "missing" in runs[0]:
+                    continue
+                runs.append(best_or_missing(ask(name, path, repeats)))
+                mine.append(soft_discs.relax(discs).data())
+            own.append(best(mine))
     return judged(own, found)
 
 
+def best_or_missing(runs: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The fastest run, or what says why there is none."""
+    return runs[0] if "missing" in runs[0] else best(runs)
+
+
 def judged(own: list[dict[str, Any]], found: dict[str, list[dict[str, Any]]]) -> Section:
-    """Rows and data from the runs."""
-    mine = best(own)
+    """Rows and data from one run of each for every start."""
+    mine = together(own)
     rows = [Row("this program, 5 degrees of freedom a grain", _described(mine))]
     for name, runs in found.items():
         if "missing" in runs[0]:
             rows.append(Row(NAMES[name], f"not run: {runs[0]['missing']}"))
             continue
-        other = best(runs)
+        other = together(runs)
         rows.append(Row(NAMES[name], _described(other)))
-        apart = abs(other["start_energy"] / mine["start_energy"] - 1.0)
+        apart = max(
+            abs(b["start_energy"] / a["start_energy"] - 1.0) for a, b in zip(own, runs, strict=True)
+        )
         if apart > 1e-9:
             rows.append(
                 Row(
@@ -93,9 +119,7 @@ def judged(own: list[dict[str, Any]], found: dict[str, list[dict[str, Any]]]) ->
         "peers": {name: runs for name, runs in found.items() if "missing" not in runs[0]},
         "missing": {n: runs[0]["missing"] for n, runs in found.items() if "missing" in runs[0]},
     }
-    title = (
-        f"{COUNT} soft discs from random places to max |F| < {soft_discs.TOLERANCE:g} k R, one core"
-    )
+    title = f"{COUNT} soft discs from random places to max |F| < {soft_discs.TOLERANCE:g} k R, {len(own)} times, one core"
     return Section("soft_discs", title, tuple(rows), data)
 
 
