@@ -23,7 +23,7 @@ from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
-from core.steering import steer
+from core.steering import ALPHA_START, DT_START, steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
@@ -99,6 +99,16 @@ class Limits(NamedTuple):
     dt_max: float
     clamp: float  # largest displacement of any degree of freedom in one iteration [R]
     skin: float  # [R]
+
+
+def fresh_control(dt_max: float) -> NDArray[np.float64]:
+    """``Minimizer.control`` before the first evaluation; ``dt_max`` as in ``Limits``."""
+    control = np.zeros(SLOTS)
+    control[DT] = DT_START * dt_max
+    control[ALPHA] = ALPHA_START
+    control[PENDING] = 1.0
+    control[START_ENERGY] = np.nan
+    return control
 
 
 @kernel

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, neighbors, rigid_contacts, steering
+from core import fire, neighbors, rigid_contacts
 from core.errors import InputError
 from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
 from core.material import area_modulus, deformation_stiffness, shape_modulus
@@ -107,7 +107,6 @@ class Relaxation:
             pull = (0.0, 0.0) if gravity is None else gravity
             start = packing.state[:2].copy()
             self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
-        self._minimizer = _minimizer(packing, friction is not None)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
         self.threads = threads
@@ -124,11 +123,10 @@ class Relaxation:
             clamp=0.1 * smallest,
             skin=skin * largest,
         )
-        control = self._minimizer.control
-        control[fire.DT] = steering.DT_START * self._limits.dt_max
-        control[fire.ALPHA] = steering.ALPHA_START
-        control[fire.PENDING] = 1.0
-        control[fire.START_ENERGY] = np.nan if count else 0.0
+        control = fire.fresh_control(self._limits.dt_max)
+        if not count:
+            control[fire.START_ENERGY] = 0.0
+        self._minimizer = _minimizer(packing, friction is not None, control)
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
         if not np.all(np.isfinite(packing.state)):
             # The neighbour search would lose such a grain without a word.
@@ -235,7 +233,7 @@ class Relaxation:
             )
 
 
-def _minimizer(packing: Packing, spins: bool) -> fire.Minimizer:
+def _minimizer(packing: Packing, spins: bool, control: NDArray[np.float64]) -> fire.Minimizer:
     count = len(packing)
     nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
     rest_area = packing.rest_radius**2
@@ -267,5 +265,5 @@ def _minimizer(packing: Packing, spins: bool) -> fire.Minimizer:
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),
-        control=np.zeros(fire.SLOTS),
+        control=control,
     )

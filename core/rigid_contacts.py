@@ -86,6 +86,12 @@ def far_inside(along, s, u, v):
 
 
 @kernel
+def past_end(s, u, v, dx, dy, ux, uy):
+    """What edge and vertex ask: the sign of ``beyond`` (nan where that is nan), for less where the end is far."""
+    return -1.0 if far_inside(-dx * ux - dy * uy, s, u, v) else beyond(s, u, v, dx, dy, ux, uy)
+
+
+@kernel
 def nearest_direction(s, u, v, dx, dy):
     """Unit vector n that minimises h(n) − n·d, by Newton from the centre line. Returns (nx, ny)."""
     r = math.sqrt(dx * dx + dy * dy)
@@ -137,13 +143,9 @@ def touch(primitives, m, x, y, s, u, v):
         overlap = h + radius - side * distance
         if overlap <= 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
-        near = not far_inside(dx * ux + dy * uy, s, u, v)
-        if near and beyond(s, u, v, dx, dy, -ux, -uy) > 0.0:
+        if past_end(s, u, v, dx, dy, -ux, -uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
-        dx = x - primitives[m, 5]
-        dy = y - primitives[m, 6]
-        near = not far_inside(-dx * ux - dy * uy, s, u, v)
-        if near and beyond(s, u, v, dx, dy, ux, uy) > 0.0:
+        if past_end(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
             return -1.0, 0.0, 0.0, 1.0, 0.0
         return overlap, nx, ny, h, 0.0
     if kind == DISC:
@@ -155,13 +157,11 @@ def touch(primitives, m, x, y, s, u, v):
         ny = dy / r
         h, slope = support(s, u, v, nx, ny)
         return h + radius - r, nx, ny, h, slope / r
-    ux = primitives[m, 3]
-    uy = primitives[m, 4]
-    if far_inside(-dx * ux - dy * uy, s, u, v) or beyond(s, u, v, dx, dy, ux, uy) <= 0.0:
+    if past_end(s, u, v, dx, dy, primitives[m, 3], primitives[m, 4]) <= 0.0:
         return -1.0, 0.0, 0.0, 1.0, 0.0
     wx = primitives[m, 5]
     wy = primitives[m, 6]
-    if (wx != 0.0 or wy != 0.0) and beyond(s, u, v, dx, dy, wx, wy) <= 0.0:
+    if (wx != 0.0 or wy != 0.0) and past_end(s, u, v, dx, dy, wx, wy) <= 0.0:
         return -1.0, 0.0, 0.0, 1.0, 0.0
     nx, ny = nearest_direction(s, u, v, dx, dy)
     h, _ = support(s, u, v, nx, ny)

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, steering, sweeps
+from core import fire, sweeps
 from core.jit import kernel
 from core.problem import Problem
 from core.relaxation import Relaxation
@@ -128,10 +128,7 @@ def paper_chart(
     chart = np.empty_like(m.state)
     to_chart(m.state, chart)
     velocity, turned = np.zeros_like(chart), np.zeros_like(chart)
-    control = np.zeros_like(m.control)
-    control[fire.DT] = steering.DT_START * limits.dt_max
-    control[fire.ALPHA] = steering.ALPHA_START
-    control[fire.PENDING] = 1.0
+    control = fire.fresh_control(limits.dt_max)
     left = most
     while True:
         m = relaxation._minimizer

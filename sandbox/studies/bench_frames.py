@@ -81,11 +81,11 @@ def drag(session: Session, frames: int, *, budget: float = BUDGET) -> Drag:
         done = session.advance(LEAST_SLICE)
         if not done and session.idle:
             break  # the end of the script
-        begun, count = clock(), 0
+        begun = clock()
         while not done and (now := clock()) - start < budget:
+            so_far = engine.progress()
+            count = 0 if so_far is None else so_far.iterations - LEAST_SLICE
             done = session.advance(slice_that_fits(start + budget - now, now - begun, count))
-            under_way = engine.progress()
-            count = 0 if under_way is None else under_way.iterations - LEAST_SLICE
         under_way = engine.progress()
         row = session.history[len(session.history) - 1]
         residuals.append(row.residual if under_way is None else under_way.residual)

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, neighbors, steering
+from core import fire, neighbors
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import PeriodicBox
@@ -110,7 +110,7 @@ def minimizer(discs: SoftDiscs) -> fire.Minimizer:
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),
-        control=np.zeros(fire.SLOTS),
+        control=fire.fresh_control(fire.DT_FACTOR),
     )
 
 
@@ -121,13 +121,8 @@ def relax(discs: SoftDiscs) -> Relaxed:
     start = clock()
     m = minimizer(discs)
     box = PeriodicBox(discs.side, discs.side).kernel_form()
-    dt_max = fire.DT_FACTOR
     # The tolerance looks at shapes too, whose forces do not vanish here: the discs' own are looked at between slices.
-    limits = fire.Limits(1e-30, 1.0, dt_max, 0.1 / SIZE_RATIO, SKIN)
-    m.control[fire.DT] = steering.DT_START * dt_max
-    m.control[fire.ALPHA] = steering.ALPHA_START
-    m.control[fire.PENDING] = 1.0
-    m.control[fire.START_ENERGY] = np.nan
+    limits = fire.Limits(1e-30, 1.0, fire.DT_FACTOR, 0.1 / SIZE_RATIO, SKIN)
     iterations, largest, due = 0, math.inf, 0
     while largest > TOLERANCE and iterations < MOST_ITERATIONS:
         due += SLICE

@@ -14,7 +14,7 @@ from core import observables, reference
 from core.packing import Packing
 from core.relaxation import Relaxation
 from core.rigid import RigidBody
-from core.rigid_contacts import EDGE, VERTEX, beyond, far_inside
+from core.rigid_contacts import EDGE, VERTEX, beyond, far_inside, past_end
 from tests.core import examples
 
 STIFFNESS = 50.0
@@ -77,6 +77,12 @@ def test_a_grain_far_inside_an_edge_is_not_beyond_its_end(
         assert beyond(s, u, v, dx, dy, ux, uy) < 0.0
     else:
         assert inside <= math.sqrt(2.0) * a * (1.0 + 1e-12)
+    both = (f(s, u, v, dx, dy, ux, uy) for f in (past_end, beyond))
+    assert len({math.copysign(1.0, value) for value in both}) == 1
+
+
+def test_a_grain_that_is_nan_is_so_at_the_end_of_an_edge() -> None:
+    assert math.isnan(past_end(math.nan, 0.0, 0.0, -9.0, 0.0, 1.0, 0.0))
 
 
 POLYGON: list[Vector] = [(0.0, 0.0), (6.0, -1.0), (7.0, 4.0), (2.0, 6.0)]
