@@ -3,29 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from sandbox.draw import words
 from sandbox.draw.theme import packing_colour
 from sandbox.draw.widgets import Button, Control, Row, TextField
-from sandbox.window.sections import Value
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.window.sections import AppSection, Value
 
 
-class CurvesSection:
+class CurvesSection(AppSection):
     """A row for every curve that is kept of this scene; the section is there while there is one."""
 
     name = "curves"
-
-    def __init__(self, app: App) -> None:
-        self.app = app
-
-    @property
-    def title(self) -> str:
-        """On the heading."""
-        return words.SECTIONS[self.name]
 
     @property
     def there(self) -> bool:

@@ -11,7 +11,7 @@ from core.errors import InputError
 from sandbox.draw import words
 from sandbox.draw.widgets import Button, Control, Note, Row, TextField
 from sandbox.scenes_here import SUFFIX, scenes_here
-from sandbox.window.sections import Value
+from sandbox.window.sections import AppSection, Value
 from scenes.text import message
 
 if TYPE_CHECKING:
@@ -21,26 +21,16 @@ STALE = 3.0  # the folder is looked at again after this [s]
 OPEN = "files/open/"
 
 
-class FilesSection:
+class FilesSection(AppSection):
     """A name, a button to save, and the files of the folder to open."""
 
     name = "files"
 
     def __init__(self, app: App) -> None:
-        self.app = app
+        super().__init__(app)
         self.stem = ""  # typed; empty: after the scene
         self._found: tuple[Path, ...] = ()
         self._looked = -STALE
-
-    @property
-    def title(self) -> str:
-        """On the heading."""
-        return words.SECTIONS[self.name]
-
-    @property
-    def there(self) -> bool:
-        """Always."""
-        return True
 
     def controls(self) -> Sequence[Control]:
         """Save, then open."""

@@ -3,37 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from sandbox import language
 from sandbox.draw import words
 from sandbox.draw.widgets import Button, Choice, Control, Option, Switch
 from sandbox.window.keys import Action
-from sandbox.window.sections import Value
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.window.sections import AppSection, Value
 
 SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
 
 
-class LooksSection:
+class LooksSection(AppSection):
     """Force chains, theme, size of text, language, sound."""
 
     name = "looks"
-
-    def __init__(self, app: App) -> None:
-        self.app = app
-
-    @property
-    def title(self) -> str:
-        """On the heading."""
-        return words.SECTIONS[self.name]
-
-    @property
-    def there(self) -> bool:
-        """Always."""
-        return True
 
     def controls(self) -> Sequence[Control]:
         """Switches and choices."""

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from sandbox.draw import words
 from sandbox.draw.widgets import Control
+
+if TYPE_CHECKING:
+    from sandbox.window.app import App
 
 Value = float | int | bool | str
 
@@ -30,3 +34,22 @@ class Section(Protocol):
 
     def use(self, name: str, value: Value, done: bool) -> None:
         """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""
+
+
+class AppSection:
+    """What the sections about the window itself share: a heading by their name, and that they are always there."""
+
+    name: str
+
+    def __init__(self, app: App) -> None:
+        self.app = app
+
+    @property
+    def title(self) -> str:
+        """On the heading."""
+        return words.SECTIONS[self.name]
+
+    @property
+    def there(self) -> bool:
+        """Always, where a section does not say otherwise."""
+        return True
