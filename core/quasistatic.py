@@ -20,6 +20,7 @@ from core.coincidence import part_coincident
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
+from core.hand import CELL, MACHINE, SLACK, Push, check_strength, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
 from core.relaxation import (
@@ -43,7 +44,7 @@ LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a bod
 
 @dataclass(frozen=True)
 class Settings:
-    """How carefully to relax. ``step`` is the longest move of a body in one increment [R].
+    """How far a hand moves a body in one increment, ``step`` [R], how hard, ``hand_strength`` [k R], and how carefully to relax.
 
     ``force_floor`` [k] and ``skin`` are multiplied by the largest rest radius: what is done is the same in all units of length.
     """
@@ -54,6 +55,7 @@ class Settings:
     skin: float = DEFAULT_SKIN
     max_iterations: int = 8_000
     threads: int = 1
+    hand_strength: float = MACHINE
 
     def __post_init__(self) -> None:
         if not 0.0 < self.step <= LONGEST_STEP:
@@ -62,6 +64,7 @@ class Settings:
             raise InputError("an increment needs at least one iteration")
         if not (self.tolerance > 0.0 and self.force_floor > 0.0 and 0.0 < self.skin < math.inf):
             raise InputError("the tolerance, the force floor and the skin must be greater than 0")
+        check_strength(self.hand_strength)
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,10 @@ class Increment:
     """What one increment came to."""
 
     moved: dict[str, Point]  # displacement of each body that was asked to move [R]
+    pulled: dict[str, Point]  # and the way in which the hand pulls it, a unit vector, or 0
     stopped: dict[str, str]  # and why it stopped short: "force limit", "end of travel" or "wall"
+    share: float  # of a step that the strength of the hand was enough for
+    hand_force: float  # along its pull [k R]; nan where it pulled at nothing
     report: Report
     reactions: Floats  # force and torque of the grains on each body, (B, 3) [k R, k R²]
     grain_contacts: observables.GrainContacts
@@ -126,7 +132,11 @@ class Quasistatic:
         self._own_motion: Floats = np.zeros_like(self._carried)
         self._last_moved: dict[str, Point] = {}
         self._moved: dict[str, Point] = {}
+        self._pulled: dict[str, Point] = {}
         self._stopped: dict[str, str] = {}
+        self._asked: tuple[dict[str, Point], PeriodicBox | None] = {}, None
+        self._push = Push(self.settings.hand_strength, 0.0)
+        self._spent = 0  # force evaluations of the tries before this one
 
     @property
     def busy(self) -> bool:
@@ -187,6 +197,8 @@ class Quasistatic:
         """
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
+        self._asked = dict(targets), box
+        self._push, self._spent = Push(self.settings.hand_strength, -math.inf), 0
         state, cell, placement = self.packing.state.copy(), self.packing.box, self.world.placement()
         try:
             self._begin(targets, box)
@@ -197,6 +209,7 @@ class Quasistatic:
 
     def _begin(self, targets: dict[str, Point], box: PeriodicBox | None) -> None:
         self._moved, self._stopped = {}, {}
+        self._pulled = {name: self._way_of_hand(name, target) for name, target in targets.items()}
         if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
             self._contacts = None
         if self._relaxes:
@@ -205,18 +218,13 @@ class Quasistatic:
             self._deep = deep_grains(self.packing, touched, self.settings.step)
         self._placement = self.world.placement()
         rows_then = self.world.primitives()[0]
-        for name, target in targets.items():
-            push = self.reactions[self.world.index(name)]
-            moved, stopped = self.world.advance(
-                name, target, self.settings.step, (float(push[0]), float(push[1]))
-            )
-            self._moved[name] = moved
-            if stopped is not None:
-                self._stopped[name] = stopped
+        self._move_bodies(targets)
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
         if self._follow is not None:
             self._follow(self.packing, self.world)
-        stepped = self._step_box(box)
+        stepped = self._box_towards(box, self._push.share * self.settings.step)
+        if box is not None and self._push.share < 1.0:
+            self._stopped[CELL] = "force limit"
         self._freeze_friction(stepped)
         self._squeeze(stepped)
         self._carried = self.packing.state[:2].copy()
@@ -266,21 +274,114 @@ class Quasistatic:
             if self._through or deep - self._deep:
                 report = replace(report, reason=StopReason.SUNK)
         good = report.reason not in FAILED
-        if not good:
-            # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
-            self.packing.state[:] = self._start
-            self.packing.box = self._start_box
-            self.world.place(self._placement)
-            contacts = None
-            unbalanced[:] = 0.0
+        remembered = self._remembered()
         forces = None
         if good and self.friction is not None and self._frozen is not None and turned is not None:
             forces = self.friction.end(self._frozen, self.packing, turned)
+        if self._limited and self._tries_again(contacts if good else None, forces):
+            self._spent += report.iterations
+            self._take_back()
+            self.friction = remembered
+            self._begin(*self._asked)
+            return None
+        report = replace(report, iterations=self._spent + report.iterations)
+        if not good:
+            # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
+            self._take_back()
+            contacts = None
+            unbalanced[:] = 0.0
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._moved
         self._contacts = contacts or self.contacts()
         return self._observe(report, self._contacts, unbalanced, forces)
+
+    @property
+    def _limited(self) -> bool:
+        """True if a hand of limited strength is at work in this increment."""
+        targets, box = self._asked
+        return math.isfinite(self.settings.hand_strength) and bool(targets or box is not None)
+
+    def _remembered(self) -> Friction | None:
+        """What frictional contacts remember, where the increment may have to be done again."""
+        return None if self.friction is None or not self._limited else self.friction.copy()
+
+    def _way_of_hand(self, name: str, target: Point) -> Point:
+        """The way in which the hand pulls a body, a unit vector; 0 at its target."""
+        body = self.world[name]
+        way = target[0] - body.position[0], target[1] - body.position[1]
+        if body.axis is not None:
+            along = np.sign(way[0] * body.axis[0] + way[1] * body.axis[1])
+            return float(along * body.axis[0]), float(along * body.axis[1])
+        length = math.hypot(*way)
+        return (way[0] / length, way[1] / length) if 0.0 < length < math.inf else (0.0, 0.0)
+
+    def _move_bodies(self, targets: dict[str, Point]) -> None:
+        """Each body towards its target, by the share of a step that is tried, unless the grains push it harder than the hand."""
+        share, settings = self._push.share, self.settings
+        forces = {}
+        for name, target in targets.items():
+            pull = self._pulled[name]
+            forces[name] = force_on_body(self._push_on(name, self.reactions), pull)
+            if share == 0.0:
+                moved, stopped = (0.0, 0.0), None
+            elif forces[name] > settings.hand_strength * (1.0 + SLACK):
+                moved, stopped = self.world.give_way(name, pull, settings.step), "force limit"
+            else:
+                moved, stopped = self.world.advance(name, target, share * settings.step)
+            self._moved[name] = moved
+            if share < 1.0:
+                stopped = "force limit"
+            if stopped is not None:
+                self._stopped[name] = stopped
+        self._push.before = max(forces.values(), default=-math.inf)
+
+    def _tries_again(
+        self,
+        contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None,
+        friction: FrictionForces | None,
+    ) -> bool:
+        """After a try, ``contacts`` None if it led to nothing: has the hand overpowered itself? Then a shorter way is set."""
+        if not any(math.hypot(*moved) > 0.0 for moved in self._moved.values()) and (
+            self.packing.box == self._start_box
+        ):
+            return False
+        if self._asked[0] and self._push.before > self._push.strength * (1.0 + SLACK):
+            return False  # it has given way
+        if contacts is None:
+            force = math.inf
+        else:
+            force = self._hand_force(contacts[0], self._measure(contacts[1], friction))
+            if not self._asked[0]:
+                before = self._contacts or self.contacts()
+                self._push.before = self._hand_force(before[0], self.reactions)
+        if not self._push.overpowered(force):
+            return False
+        self._push.shorten(force)
+        return True
+
+    def _hand_force(self, pairs: observables.GrainContacts, reactions: Floats) -> float:
+        """The hand's force along its pull [k R], the largest of those on several bodies; nan where it pulls at nothing."""
+        if self._pulled:
+            pushes = (self._push_on(name, reactions) for name in self._pulled)
+            return max(map(force_on_body, pushes, self._pulled.values()))
+        box, asked = self._start_box, self._box_towards(self._asked[1], self.settings.step)
+        if box is None or asked is None or self._asked[1] is None:
+            return math.nan
+        ends = [(box.width, asked.width), (box.height, asked.height), (box.shift, asked.shift)]
+        width, height, shift = (b - a if math.isfinite(a) else 0.0 for a, b in ends)
+        return force_on_box(pairs, box, (width, height, shift))
+
+    def _push_on(self, name: str, reactions: Floats) -> Point:
+        """The push of the grains on a body [k R]."""
+        fx, fy, _ = map(float, reactions[self.world.index(name)])
+        return fx, fy
+
+    def _take_back(self) -> None:
+        """Grains, cell and bodies as they were before the increment."""
+        self.packing.state[:] = self._start
+        self.packing.box = self._start_box
+        self.world.place(self._placement)
 
     def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
         """All contacts as things stand now."""
@@ -329,12 +430,11 @@ class Quasistatic:
         self._contacts = self.contacts()
         self.reactions = observables.reactions(self._contacts[1], owner, self._placement)
 
-    def _step_box(self, target: PeriodicBox | None) -> PeriodicBox | None:
-        """The periodic box one step nearer to ``target``."""
-        old = self.packing.box
+    def _box_towards(self, target: PeriodicBox | None, step: float) -> PeriodicBox | None:
+        """The periodic box at the start of the increment, and from there at most ``step`` [R] nearer to ``target``."""
+        old = self._start_box
         if target is None or old is None:
             return old
-        step = self.settings.step
 
         def towards(now: float, then: float) -> float:
             return now + min(max(then - now, -step), step) if np.isfinite(now) else now
@@ -397,6 +497,15 @@ class Quasistatic:
             self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
         )
 
+    def _measure(
+        self, bodies: observables.RigidContacts, friction: FrictionForces | None
+    ) -> Floats:
+        """Force and torque of the grains on each body, (B, 3) [k R, k R²]."""
+        _, owner = self.world.primitives()
+        placement = self.world.placement()
+        reactions = observables.reactions(bodies, owner, placement)
+        return reactions if friction is None else reactions + friction.reactions(owner, placement)
+
     def _observe(
         self,
         report: Report,
@@ -404,15 +513,14 @@ class Quasistatic:
         unbalanced: Floats,
         friction: FrictionForces | None,
     ) -> Increment:
-        _, owner = self.world.primitives()
-        placement = self.world.placement()
         pairs, bodies = contacts
-        self.reactions = observables.reactions(bodies, owner, placement)
-        if friction is not None:
-            self.reactions += friction.reactions(owner, placement)
+        self.reactions = self._measure(bodies, friction)
         self.latest = Increment(
             moved=self._moved,
+            pulled=self._pulled,
             stopped=self._stopped,
+            share=self._push.share,
+            hand_force=self._hand_force(pairs, self.reactions),
             report=report,
             reactions=self.reactions,
             grain_contacts=pairs,

@@ -27,8 +27,8 @@ Point = tuple[float, float]
 Role = Literal["wall", "piston", "intruder", "body"]
 
 SUBSTEPS = 4
-# [k · increment²]: a push that exceeds the hand's force by 1 k R moves the body back by 0.0075 R an increment.
-HELD_MASS = 50.0
+HELD_MASS = 50.0  # [k · increment²] of a body in a hand, on a joint that gives way at walls: both only settle how it meets them
+JOINT_FORCE = 40.0  # [k R]
 CLEAR = 1.0  # [R] what is further away is not touched in one increment
 SAME_POINT = 1e-9  # [R] what is closer than this is at the same place
 
@@ -38,8 +38,8 @@ class RigidBody:
     """One body. Shapes are in the body's own frame [R]; ``position`` [R] and ``angle`` [rad] place them.
 
     role: wall, piston, intruder or body. Static unless ``held`` (a hand can drag it anywhere) or ``axis`` (unit vector:
-    it slides along that line, and ``travel`` bounds how far from where it stood first [R]). ``force_limit`` [k R]: the
-    hand gives way there. ``drawn``: a person has drawn this wall; what slides stops at it, and it can be erased.
+    it slides along that line, and ``travel`` bounds how far from where it stood first [R]). ``drawn``: a person has drawn
+    this wall; what slides stops at it, and it can be erased.
     """
 
     name: str
@@ -56,7 +56,6 @@ class RigidBody:
     held: bool = False
     axis: Point | None = None
     travel: tuple[float, float] = (-math.inf, math.inf)
-    force_limit: float = 40.0
     drawn: bool = False
     home: Point = field(init=False)
     _made: tuple[Point, float, Floats] | None = field(
@@ -182,13 +181,11 @@ class RigidWorld:
         for body, (x, y, angle) in zip(self.bodies, placement, strict=True):
             body.position, body.angle = (float(x), float(y)), float(angle)
 
-    def advance(
-        self, name: str, target: Point, step: float, reaction: Point = (0.0, 0.0)
-    ) -> tuple[Point, str | None]:
-        """Move a body towards ``target`` [R] by at most ``step`` [R]; ``reaction`` [k R] is the push of the grains on it.
+    def advance(self, name: str, target: Point, step: float) -> tuple[Point, str | None]:
+        """Move a body towards ``target`` [R] by at most ``step`` [R].
 
-        Returns the displacement [R] and, where the hand is stopped by more than distance, why: "force limit", "end of travel" or
-        "wall". Raises InputError for a body that cannot be moved, and for a target that is not finite.
+        Returns the displacement [R] and, where something stops it, what: "end of travel" or "wall". Raises InputError for a
+        body that cannot be moved, and for a target that is not finite.
         """
         body = self[name]
         if not body.movable:
@@ -197,16 +194,19 @@ class RigidWorld:
             raise InputError(f"{name!r} cannot be moved to {target}: give finite numbers")
         wanted = np.array(target) - body.position
         if body.axis is not None:
-            return self._slide(body, float(np.dot(wanted, body.axis)), step, reaction)
+            return self._slide(body, float(np.dot(wanted, body.axis)), step)
         distance = float(np.hypot(*wanted))
         if distance > step:
             wanted *= step / distance
-        return self._pull(body, wanted, step, reaction)
+        return self._pull(body, wanted, step)
 
-    def _slide(
-        self, body: RigidBody, wanted: float, step: float, reaction: Point
-    ) -> tuple[Point, str | None]:
-        """A kinematic piston: exactly as far as it is told, within its travel, unless the grains push harder than the hand.
+    def give_way(self, name: str, pull: Point, step: float) -> Point:
+        """Let a body that is pushed harder than its hand pulls, along the unit vector ``pull``, go back by ``step`` [R]."""
+        x, y = self[name].position
+        return self.advance(name, (x - step * pull[0], y - step * pull[1]), step)[0]
+
+    def _slide(self, body: RigidBody, wanted: float, step: float) -> tuple[Point, str | None]:
+        """A kinematic piston: exactly as far as it is told, within its travel.
 
         Where it would go into a drawn wall, or further into one, it stays.
         """
@@ -216,9 +216,6 @@ class RigidWorld:
         asked = stood + min(max(wanted, -step), step)
         allowed = min(max(asked, body.travel[0]), body.travel[1])
         amount = allowed - stood
-        push_back = float(np.dot(reaction, axis))
-        if amount != 0.0 and -push_back * math.copysign(1.0, amount) > body.force_limit:
-            return (0.0, 0.0), "force limit"
         dx, dy = amount * float(axis[0]), amount * float(axis[1])
         there = (body.position[0] + dx, body.position[1] + dy)
         walls = near(self.drawn, body)
@@ -227,23 +224,15 @@ class RigidWorld:
         body.position = there
         return (dx, dy), ("end of travel" if allowed != asked else None)
 
-    def _pull(
-        self, body: RigidBody, wanted: Floats, step: float, reaction: Point
-    ) -> tuple[Point, str | None]:
+    def _pull(self, body: RigidBody, wanted: Floats, step: float) -> tuple[Point, str | None]:
         """A held body: dynamic, on a PivotJoint from the kinematic hand, among the static rest."""
         space = pymunk.Space()
         space.iterations = 30
         space.collision_slop = 1e-4
         held = pymunk.Body(HELD_MASS, math.inf)
         held.position, held.angle = body.position, body.angle
-        push = float(np.hypot(*reaction))
-        too_hard = push > body.force_limit
-        # What goes beyond the hand's force moves the body back, by less than one step.
-        most = body.force_limit + HELD_MASS * step
-        if push > most:
-            reaction = (reaction[0] * most / push, reaction[1] * most / push)
-        held.velocity = (0.0, 0.0) if too_hard else (float(wanted[0]), float(wanted[1]))
-        held.velocity_func = lambda b, _gravity, _damping, dt: _limit_speed(b, reaction, dt, step)
+        held.velocity = (float(wanted[0]), float(wanted[1]))
+        held.velocity_func = lambda b, _gravity, _damping, _dt: _limit_speed(b, step)
         space.add(held, *_shapes(body, held))
         for other in (*(b for b in self.bodies if not b.drawn), *near(self.drawn, body)):
             if other is not body:
@@ -256,7 +245,7 @@ class RigidWorld:
         hand.position = body.position
         hand.velocity = (float(wanted[0]), float(wanted[1]))
         joint = pymunk.PivotJoint(hand, held, (0.0, 0.0), (0.0, 0.0))
-        joint.max_force = body.force_limit
+        joint.max_force = JOINT_FORCE
         joint.collide_bodies = False
         space.add(hand, joint)
         for _ in range(SUBSTEPS):
@@ -266,7 +255,7 @@ class RigidWorld:
         stopped = None
         asked = float(np.hypot(*wanted))
         if asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2:
-            stopped = "force limit" if too_hard else "wall"
+            stopped = "wall"
         return (float(moved[0]), float(moved[1])), stopped
 
 
@@ -307,12 +296,11 @@ def depth(body: RigidBody, position: Point, others: Sequence[RigidBody]) -> floa
     )
 
 
-def _limit_speed(body: pymunk.Body, reaction: Point, dt: float, step: float) -> None:
-    """Velocity of a held body: never faster than one step an increment, then pushed by the grains, before the hand pulls."""
+def _limit_speed(body: pymunk.Body, step: float) -> None:
+    """Velocity of a held body: never faster than one step an increment."""
     velocity = body.velocity
     if velocity.length > step:
-        velocity *= step / velocity.length
-    body.velocity = velocity + pymunk.Vec2d(*reaction) * (dt / HELD_MASS)
+        body.velocity = velocity * (step / velocity.length)
 
 
 def _shapes(body: RigidBody, holder: pymunk.Body) -> list[pymunk.Shape]:

@@ -17,6 +17,7 @@ class Course:
     targets: dict[str, Point] = field(default_factory=dict)  # where the hand or the script wants it
     held: set[str] = field(default_factory=set)
     blocked: set[str] = field(default_factory=set)  # stopped: they try again when the hand moves
+    stuck: int = 0  # increments in a row in which all the hand's strength moved nothing
     script: int | None = None  # increments of the scripted drive so far
     stroke: float = 0.0  # [R], or what the scene plots instead
     out: int = 0  # grains that have left

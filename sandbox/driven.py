@@ -7,10 +7,10 @@ import math
 import numpy as np
 
 from core.errors import InputError
+from core.hand import CELL
 from core.packing import PeriodicBox
 from core.rigid import Point
 from sandbox.course import Course
-from sandbox.reading import BOX
 from scenes.scene import Handle, Scene, Setup, Values
 
 ARRIVED = 1e-6  # [R] a body this near its target is there
@@ -94,7 +94,7 @@ class Driven:
 
     def _distance(self, name: str, target: Point) -> float:
         """How far a handle is from its target [R]."""
-        if name == BOX:
+        if name == CELL:
             cells = self.setup.packing.box, self._cell(target)
             now, then = ((c.width, c.height, c.shift) if c else (0.0,) * 3 for c in cells)
             return float(np.max(np.abs(np.nan_to_num(then) - np.nan_to_num(now))))

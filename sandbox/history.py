@@ -27,6 +27,7 @@ class Row:
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
     force_error: float = math.nan  # estimate for the force on the handle [k R], see ``reading``
+    hand_strength: float = math.inf  # the most that the hand could give [k R]
 
     @property
     def magnitude(self) -> float:
@@ -34,7 +35,7 @@ class Row:
         return math.hypot(self.fx, self.fy) or abs(self.resisting)
 
 
-EventKind = Literal["clog", "arch", "avalanche"]
+EventKind = Literal["locked", "clog", "arch", "avalanche"]
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,7 @@ _HEADER = (
     "stop reason",
     "force against the drive [k R]",
     "estimated error of the force on the handle [k R]",
+    "hand strength [k R] (inf: a testing machine)",
 )
 
 

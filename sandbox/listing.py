@@ -65,6 +65,7 @@ def _scene_data(scene: Any) -> dict[str, Any]:
                 "low": p.low,
                 "high": p.high,
                 "help": p.help,
+                "top": p.top,
             }
             for p in scene.parameters
         ],

@@ -6,15 +6,16 @@ import math
 
 import numpy as np
 
+from core.hand import CELL
 from core.quasistatic import Increment
 from core.relaxation import FAILED, StopReason
 from sandbox.course import Course
 from sandbox.history import Row
 from scenes.accuracy import Accuracy
-from scenes.scene import Setup
+from scenes.scene import Holding, Remarks, Setup
 from scenes.text import Text
 
-BOX = "box"  # the handle that is no body: the periodic cell
+LOCKED_AFTER = 3  # increments in a row that all the strength of the hand could not make
 STUCK = 1e-3  # of a step: a body that moves less than that is stopped
 PRESSED_IN = (
     "a grain was pressed into a wall: back to the state before this step. Draw back, or reset"
@@ -29,19 +30,18 @@ _WHAT_FAILED = {
 
 
 def follow_drive(course: Course, setup: Setup, increment: Increment) -> None:
-    """Stroke and direction of the drive: along its axis for a body that slides, along its path for one that is dragged."""
+    """Stroke and direction of the drive: along its axis for a body that slides, as the hand pulls for one that is dragged."""
     drive = setup.handles[0].body
-    if drive == BOX:
+    if drive == CELL:
         return
     body = setup.world[drive]
     if body.axis is not None:
         course.stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
         return
-    x, y = increment.moved.get(drive, (0.0, 0.0))
-    length = math.hypot(x, y)
-    course.stroke += length
-    if length > 0.0:
-        course.direction = (x / length, y / length)
+    course.stroke += math.hypot(*increment.moved.get(drive, (0.0, 0.0)))
+    pull = increment.pulled.get(drive, (0.0, 0.0))
+    if pull != (0.0, 0.0):
+        course.direction = pull
 
 
 def read_off(
@@ -53,7 +53,7 @@ def read_off(
     """
     fx = fy = 0.0
     drive = setup.handles[0].body
-    if drive != BOX:
+    if drive != CELL:
         fx, fy = map(float, increment.reactions[setup.world.index(drive), :2])
     resisting = -(fx * course.direction[0] + fy * course.direction[1]) + 0.0
     curve = setup.curve
@@ -74,28 +74,51 @@ def read_off(
         stop_reason=str(report.reason),
         resisting=float(resisting),
         force_error=accuracy.force_error(report.residual, report.mean_contact_force),
+        hand_strength=setup.solver.hand_strength,
     )
 
 
 def tell_what_stopped(course: Course, setup: Setup, increment: Increment) -> None:
-    """Notices of what held the hand back; what is stuck tries again only when the hand moves."""
+    """Notices of what held the hand back; what is stuck tries again only when the hand moves.
+
+    A hand that is not strong enough tries ``LOCKED_AFTER`` times, as friction may yield meanwhile; so does the script.
+    """
     course.notices.clear()
+    limited = any(why == "force limit" for why in increment.stopped.values())
+    still = all(
+        math.hypot(*moved) < STUCK * setup.solver.step for moved in increment.moved.values()
+    )
+    if increment.moved or CELL in increment.stopped:
+        course.stuck = course.stuck + 1 if limited and still and increment.share == 0.0 else 0
+    if limited and course.script is not None:
+        course.script = course.script - 1 if course.stuck < LOCKED_AFTER else None
     labels = {handle.body: handle.label for handle in setup.handles}
     for name, why in increment.stopped.items():
         label = labels[name]
+        if why == "force limit":
+            if course.stuck >= LOCKED_AFTER:
+                course.blocked.add(name)
+            else:
+                limit = setup.solver.hand_strength
+                text = "all the hand has: {limit:g} k R on the {label}"
+                course.notices.append(Text(text, limit=limit, label=label))
+            continue
         stuck = math.hypot(*increment.moved[name]) < STUCK * setup.solver.step
         if stuck:
             course.blocked.add(name)
-        if why == "force limit":
-            limit = setup.world[name].force_limit
-            text = "the hand is not stronger than {limit:g} k R: {label} stopped"
-            course.notices.append(Text(text, limit=limit, label=label))
-        elif why == "end of travel":
+        if why == "end of travel":
             course.notices.append(Text("{label}: end of travel", label=label))
         elif stuck:
             course.notices.append(Text("{label}: stopped by the wall", label=label))
     reason = increment.report.reason
     if reason in FAILED:
-        course.blocked.update(increment.moved, {BOX})
+        course.blocked.update(increment.moved, {CELL})
         course.script = None
         course.notices.append(_WHAT_FAILED[reason])
+
+
+def locked(remarks: Remarks, holding: Holding, strength: float) -> Remarks:
+    """What the scene has said, and that all the ``strength`` of the hand [k R] moves nothing, because of what holds."""
+    text = Text("locked at {strength:g} k R: {holding}", strength=strength, holding=holding.text)
+    grains = remarks.highlight if holding.grains is None else holding.grains
+    return Remarks((text,), grains, {**remarks.happening, "locked": text})

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.friction import Friction
+from core.hand import CELL
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
 from sandbox.checkpoints import Checkpoint, Checkpoints, bare
@@ -19,7 +20,13 @@ from sandbox.driven import Driven
 from sandbox.editing import edited
 from sandbox.frame import Frame
 from sandbox.history import Event, History
-from sandbox.reading import BOX, follow_drive, read_off, tell_what_stopped
+from sandbox.reading import (
+    LOCKED_AFTER,
+    follow_drive,
+    locked,
+    read_off,
+    tell_what_stopped,
+)
 from sandbox.snapshot import View, take
 from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
 from scenes.text import message
@@ -82,6 +89,8 @@ class Run(Driven):
         except InputError:
             self.restore(before)
             raise
+        self._course.blocked.clear()
+        self._course.stuck = 0
         if self._course.script is not None:
             place = self.scene.place_in_drive(self._course.script, self.values, values)
             self._course.script = place
@@ -133,7 +142,7 @@ class Run(Driven):
             targets = {} if self._course.touched else self._next_targets()
             if not targets and self._still:
                 return False
-            box = targets.pop(BOX, None)
+            box = targets.pop(CELL, None)
             try:
                 self.engine.begin(targets, None if box is None else self._cell(box))
             except InputError as error:
@@ -216,11 +225,13 @@ class Run(Driven):
             course.initial,
         )
         remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
+        if self.locked:
+            remarks = locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
         course.remarks = remarks
         row = self.history[-1]
         for kind, text in remarks.happening.items():
-            # A clog remains the same one until a grain has left.
-            same = kind != "avalanche" and course.announced.get(kind) == course.out
+            # A clog or an arch remains the same one until a grain has left.
+            same = kind in ("clog", "arch") and course.announced.get(kind) == course.out
             if kind not in going_on.happening and not same:
                 course.announced[kind] = course.out
                 self.history.announce(Event(kind, row.increment, row.stroke, row.resisting, text))
@@ -330,6 +341,41 @@ class Run(Driven):
         for wall in self.setup.world.drawn:
             digest.update(wall.primitives().tobytes())
         return digest.hexdigest()
+
+    @property
+    def locked(self) -> bool:
+        """True if all the strength of the hand moves nothing."""
+        return self._course.stuck >= LOCKED_AFTER
+
+    @property
+    def how_locked(self) -> str:
+        """Where a locked hand ended, in one line."""
+        course, way = self._course, self.way
+        words = f"locked at {self.strength:g} k R"
+        if way is not None:
+            words += f" after {way:.1f} R of stroke"
+        if self.setup.outlet is not None:
+            words += f": {course.out} of {course.initial} out"
+        return words
+
+    @property
+    def way(self) -> float | None:
+        """How far the body in the hand has come from where it first stood [R]; None for a periodic cell."""
+        name = self.setup.handles[0].body
+        if name == CELL:
+            return None
+        body = self.setup.world[name]
+        return math.dist(body.position, body.home)
+
+    @property
+    def hand_force(self) -> float:
+        """Of the latest increment, along its pull [k R]; nan where it pulled at nothing."""
+        return self._last.hand_force
+
+    @property
+    def strength(self) -> float:
+        """Of the hand [k R]."""
+        return self.setup.solver.hand_strength
 
     @property
     def failed(self) -> bool:

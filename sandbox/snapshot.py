@@ -155,7 +155,10 @@ def _handle_state(view: View, handle: Handle) -> HandleState:
         x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
         return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
     body = view.setup.world[handle.body]
-    push = view.last.reactions[view.setup.world.index(handle.body)]
+    push = view.last.reactions[view.setup.world.index(handle.body), :2]
+    # The hand's force along its pull, as it is plotted; what goes across is borne by the guide.
+    along = view.course.direction if body.axis is None else body.axis
+    fx, fy = -float(np.dot(push, along)) * np.array(along)
     x, target = _nearest_image(body.position[0], target, box)
     return HandleState(
         name=handle.body,
@@ -163,8 +166,8 @@ def _handle_state(view: View, handle: Handle) -> HandleState:
         x=x,
         y=body.position[1],
         target=target,
-        fx=-float(push[0]),
-        fy=-float(push[1]),
+        fx=float(fx),
+        fy=float(fy),
         radius=handle.radius,
         axis=body.axis,
     )

@@ -30,6 +30,7 @@ class Condition:
     setting: str = ""  # a parameter has another value than before
     below: float = math.inf  # or one that is at most so large
     out: int = 0  # so many more grains have left
+    force: float = 0.0  # what is plotted has come to so much
     grains: int = 0  # so many grains have been placed or erased
     walls: int = 0  # so many walls have been drawn
 
@@ -49,20 +50,25 @@ class Step:
 class Moment:
     """What conditions look at, of all panes together."""
 
-    handles: Mapping[str, tuple[float, float]]
+    handles: tuple[
+        Mapping[str, tuple[float, float]], ...
+    ]  # of every pane: one of them may be locked
     settings: Mapping[str, object]
     events: tuple[tuple[str, int, int], ...]  # kind, increment, pane
     view: str
     out: int
+    force: float  # the largest that is plotted now
     grains: int
     bodies: int
 
     @classmethod
     def of(cls, frames: Sequence[Frame], view: str) -> Moment:
-        """Handles and settings are those of the first pane: the same hand drives all."""
+        """Settings are those of the first pane: the same ones hold for all."""
         first = frames[0]
         return cls(
-            handles={handle.name: (handle.x, handle.y) for handle in first.handles},
+            handles=tuple(
+                {handle.name: (handle.x, handle.y) for handle in frame.handles} for frame in frames
+            ),
             settings=dict(first.settings),
             events=tuple(
                 (event.kind, event.increment, pane)
@@ -71,6 +77,7 @@ class Moment:
             ),
             view=view,
             out=max(frame.grains_out for frame in frames),
+            force=max(frame.curve_force[-1] for frame in frames),
             grains=first.grains + first.grains_out,
             bodies=len(first.bodies),
         )
@@ -80,8 +87,10 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
     """Has it happened between two moments?"""
     c = condition
     if c.moved:
-        places = then.handles.get(c.moved), now.handles.get(c.moved)
-        return None not in places and math.dist(*places) >= c.by  # type: ignore[arg-type]
+        return any(
+            c.moved in before and c.moved in after and _apart(before[c.moved], after[c.moved], c.by)
+            for before, after in zip(then.handles, now.handles, strict=False)
+        )
     if c.event:
         return any(event[0] == c.event for event in set(now.events) - set(then.events))
     if c.view:
@@ -93,9 +102,15 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
         return before != after
     if c.out:
         return now.out - then.out >= c.out
+    if c.force:
+        return now.force >= c.force
     if c.grains:
         return abs(now.grains - then.grains) >= c.grains
     return now.bodies - then.bodies >= c.walls
+
+
+def _apart(a: tuple[float, float], b: tuple[float, float], least: float) -> bool:
+    return math.dist(a, b) >= least
 
 
 def scenes() -> tuple[str, ...]:

@@ -229,6 +229,8 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
             return
     for session in sessions:
         print(f"{session.packing}: " * (len(sessions) > 1) + _summary(session, outcome))
+        if session.run.locked:
+            print(f"  {session.run.how_locked}")
         for check in session.checks():
             verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
             print(f"  {verdict:<5}  {check.name}: {check.measured}")

@@ -29,6 +29,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    hand,
     recipe,
     solver,
 )
@@ -63,6 +64,7 @@ class BiaxialPress(Scene):
             "compression", 0.2, "", 0.01, 0.5, "largest loss of area, as a share of it", live=True
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
+        hand(1000.0),
         *MATERIAL,
         *SOLVER,
     )
@@ -163,7 +165,6 @@ def _lid(half: float) -> RigidBody:
         segments=[(*a, *b, 0.5 * LID) for a, b in pairs],
         axis=(0.0, -1.0),
         travel=(0.0, way_down(math.sqrt(2.0) * half, DEEPEST)),
-        force_limit=100.0 * half,
     )
 
 

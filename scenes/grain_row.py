@@ -30,6 +30,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    hand,
     solver,
 )
 from scenes.text import Text
@@ -65,6 +66,7 @@ class GrainRow(Scene):
             live=True,
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
+        hand(1000.0),
         *MATERIAL,
         Parameter(
             "step", 0.005, "R", 1e-4, 0.05, "longest move of the piston in one increment", live=True
@@ -197,7 +199,6 @@ def _box(half_width: float) -> RigidWorld:
         polygons=[(((-w, 0.0), (w, 0.0), (w, WALL), (-w, WALL)), 0.0)],
         axis=(0.0, -1.0),
         travel=(-LIFT, 1.0),
-        force_limit=400.0 * half_width,
     )
 
     def wall(name: str, x0: float, x1: float, y0: float, y1: float) -> RigidBody:

@@ -19,6 +19,7 @@ from scenes.scene import (
     MATERIAL,
     SOLVER,
     Handle,
+    Holding,
     Latest,
     Outlet,
     Progress,
@@ -26,6 +27,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    hand,
     recipe,
     solver,
 )
@@ -74,6 +76,7 @@ class Hopper(Scene):
             "stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke", live=True
         ),
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
+        hand(6.0),
         *MATERIAL,
         *SOLVER,
     )
@@ -171,11 +174,7 @@ class Hopper(Scene):
             return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
         if since < 0.5 * DIAMETER or force <= max(latest.last_exit[1], 0.0):
             return Remarks()
-        bodies = latest.now.body_contacts
-        body = setup.world.primitives()[1][bodies.primitive]
-        side = np.where(body == setup.world.index("left wall"), -1, 0)
-        side[body == setup.world.index("right wall")] = 1
-        found = standing_arch(setup, latest, side)
+        found = _arch(setup, latest)
         if since < DIAMETER:
             if found is None:
                 return Remarks()
@@ -191,6 +190,21 @@ class Hopper(Scene):
                 grains=int(found.sum()),
             )
         return Remarks((text,), found, {"clog": text})
+
+    def what_holds(self, setup: Setup, latest: Latest) -> Holding:
+        found = _arch(setup, latest)
+        if found is None:
+            return super().what_holds(setup, latest)
+        return Holding(Text("an arch of {grains} grains holds", grains=int(found.sum())), found)
+
+
+def _arch(setup: Setup, latest: Latest) -> NDArray[np.bool_] | None:
+    """The grains (N,) of the arch from the left to the right wall of the funnel, or None."""
+    bodies = latest.now.body_contacts
+    body = setup.world.primitives()[1][bodies.primitive]
+    side = np.where(body == setup.world.index("left wall"), -1, 0)
+    side[body == setup.world.index("right wall")] = 1
+    return standing_arch(setup, latest, side)
 
 
 class Shape:

@@ -21,6 +21,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    hand,
     recipe,
     solver,
 )
@@ -56,6 +57,7 @@ class Intruder(Scene):
         ),
         Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag", live=True),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
+        hand(0.6),
         *MATERIAL,
         *SOLVER,
     )

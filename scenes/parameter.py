@@ -23,7 +23,8 @@ def shown(value: object) -> str:
 class Parameter:
     """One setting of a scene. Its type is that of ``default``; ``low`` and ``high`` are allowed values.
 
-    ``live``: a change acts on the grains where they stand; without, the scene is built anew.
+    ``live``: a change acts on the grains where they stand; without, the scene is built anew. ``top``: what the highest value
+    means, if more than itself: a word that may be typed for it.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Parameter:
     high: Value
     help: str
     live: bool = False
+    top: str = ""
 
     @property
     def kind(self) -> str:
@@ -83,6 +85,8 @@ class Parameter:
             if plain not in words:
                 raise InputError(f"{self.name} is a switch: give true or false, not {shown(text)}")
             return words[plain]
+        if self.top and plain == self.top:
+            return self.high
         try:
             number = float(plain)
         except ValueError:

@@ -19,11 +19,14 @@ from core import observables
 from core.errors import InputError
 from core.friction import Friction
 from core.generate import KINDS, Recipe, inside
+from core.hand import MACHINE
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Settings
 from core.rigid import Point, RigidWorld
 from scenes.accuracy import Accuracy, accuracy_of
+from scenes.bearing import bearing
 from scenes.parameter import Parameter, Value
+from scenes.text import Text
 
 Values = Mapping[str, Value]
 Progress = Callable[[float], None]
@@ -114,7 +117,7 @@ class Latest:
     at_start: int = 0  # grains then
 
 
-Happening = Literal["clog", "arch", "avalanche"]
+Happening = Literal["locked", "clog", "arch", "avalanche"]
 
 
 @dataclass(frozen=True)
@@ -127,6 +130,14 @@ class Remarks:
     notices: tuple[str, ...] = ()
     highlight: NDArray[np.bool_] | None = None
     happening: Mapping[Happening, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Holding:
+    """What holds a locked hand, in plain words, and the grains that do, (N,) or None."""
+
+    text: str
+    grains: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -242,6 +253,8 @@ class Scene(ABC):
                 tolerance=float(values["tolerance"]),
                 max_iterations=int(values["max_iterations"]),
             )
+        if HAND_STRENGTH in changed:
+            setup.solver = replace(setup.solver, hand_strength=hand_strength(values))
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
@@ -253,6 +266,13 @@ class Scene(ABC):
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
         del setup, values, latest
         return Remarks()
+
+    def what_holds(self, setup: Setup, latest: Latest) -> Holding:
+        """What a hand cannot overcome that pushes with all its strength and moves nothing: the grains that bear its force."""
+        grains = bearing(setup.packing, latest.now, setup.world, setup.handles[0].body)
+        if grains is None:
+            return Holding("the grains hold")
+        return Holding(Text("{grains} grains hold", grains=int(grains.sum())), grains)
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         """Claims that must hold; subclasses add their own to those for any scene."""
@@ -287,6 +307,24 @@ MATERIAL = (
         live=True,
     ),
 )
+HAND_STRENGTH = "hand_strength"
+STRONGEST = 1000.0  # [k R] stands for a testing machine
+
+
+def hand(default: float) -> Parameter:
+    """The strength of the hand, ``default`` [k R] or ``STRONGEST``."""
+    return Parameter(
+        HAND_STRENGTH,
+        default,
+        "k R",
+        0.01,
+        STRONGEST,
+        "strongest push or pull of the hand; 1000, or the word machine, is a testing machine that goes wherever it is driven",
+        live=True,
+        top="machine",
+    )
+
+
 FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leaves the term out"
 # Increment and tolerance, for play and record alike, come from the work-precision plots of `study accuracy`, see
 # assets/studies/accuracy. At 1e-2 the force that a hand feels is off by as much as the model is (2 % with C = 50 against hard
@@ -336,7 +374,14 @@ def solver(values: Values) -> Settings:
         step=float(values["step"]),
         tolerance=float(values["tolerance"]),
         max_iterations=int(values["max_iterations"]),
+        hand_strength=hand_strength(values),
     )
+
+
+def hand_strength(values: Values) -> float:
+    """The strength of the hand that ``values`` ask for [k R]; without bound for a testing machine."""
+    strength = float(values[HAND_STRENGTH])
+    return MACHINE if strength >= STRONGEST else strength
 
 
 def _grains_kept(setup: Setup, track: Track) -> Check:

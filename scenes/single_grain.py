@@ -29,6 +29,8 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    hand,
+    hand_strength,
 )
 from scenes.text import Text
 
@@ -80,6 +82,7 @@ class SingleGrain(Scene):
             "largest approach of the plates, in diameters",
             live=True,
         ),
+        hand(1000.0),
         Parameter(
             "step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment", live=True
         ),
@@ -138,6 +141,7 @@ class SingleGrain(Scene):
                 step=float(values["step"]),
                 tolerance=float(values["tolerance"]),
                 max_iterations=int(values["max_iterations"]),
+                hand_strength=hand_strength(values),
             ),
             handles=(Handle("plate", "plate", (0.0, -1.0), half_width),),
             bounds=(-side - 0.2 * radius, -1.2 * PLATE * radius, side + 0.2 * radius, top),
@@ -227,7 +231,6 @@ def _plates(grains: Packing, four: bool) -> tuple[RigidWorld, float]:
             ],
             axis=(0.0, -1.0),
             travel=(-LIFT * radius, 1.5 * radius),
-            force_limit=1e3 * radius,
         ),
     ]
     if four:

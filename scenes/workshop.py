@@ -18,6 +18,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    hand,
     recipe,
     solver,
 )
@@ -43,6 +44,7 @@ class Workshop(Scene):
         Parameter("height", 20.0, "R", 8.0, 90.0, "height of the box"),
         Parameter("intruder_radius", 2.0, "R", 0.5, 10.0, "radius of the disc"),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
+        hand(0.6),
         *MATERIAL,
         *SOLVER,
     )

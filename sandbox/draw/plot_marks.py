@@ -17,8 +17,9 @@ MARK = 6.0  # half the size of an event's mark at scale 1 [px]
 SWATCH = 31.0  # length of the line before a name at scale 1 [px]
 LEADER = 18.0  # room for the thread from a curve's end to its name at scale 1 [px]
 
-# Corners of the marks, the y axis up; an arch points up, an avalanche down, a clog is a block.
+# Corners of the marks, the y axis up; an arch points up, an avalanche down, a clog is a block, a locked hand a diamond.
 SHAPES = {
+    "locked": ((0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)),
     "arch": ((-1.0, -0.8), (1.0, -0.8), (0.0, 1.0)),
     "avalanche": ((-1.0, 0.8), (0.0, -1.0), (1.0, 0.8)),
     "clog": ((-0.8, -0.8), (0.8, -0.8), (0.8, 0.8), (-0.8, 0.8)),

@@ -10,6 +10,7 @@ import pygame
 
 from sandbox.draw import words
 from sandbox.draw.painter import Painter
+from sandbox.draw.plot_marks import SHAPES
 from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
 from sandbox.history import Event
@@ -69,14 +70,8 @@ def draw_bar(painter: Painter, bar: Bar, pointer: float | None) -> None:
 
 
 def _draw_event(painter: Painter, x: float, y: float, kind: str, colour: int) -> None:
-    """A clog is a square, an arch an upright triangle, an avalanche one on its tip."""
-    size = 6.0 * painter.scale
-    shapes = {
-        "clog": [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)],
-        "arch": [(-1.1, -0.9), (1.1, -0.9), (0.0, 1.1)],
-    }
-    corners = np.array(shapes.get(kind, [(-1.1, 0.9), (0.0, -1.1), (1.1, 0.9)])) * size
-    places = corners + np.array([x, -y])
+    """The mark that it has on the curve."""
+    places = np.array(SHAPES[kind]) * 6.6 * painter.scale + np.array([x, -y])
     painter.hull(places, 1.5 * painter.scale, painter.theme.panel)
     painter.hull(places, 0.0, colour)
 

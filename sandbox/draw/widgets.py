@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import pygame
 
 from sandbox.draw.text import BODY, SMALL, Type
-from sandbox.draw.widgets_scale import Range
+from sandbox.draw.widgets_scale import Range, shown
 
 TARGET = 36.0  # height of what can be pressed [px]
 GAP = 6.0  # between controls [px]
@@ -36,6 +36,12 @@ class Slider:
     at_once: bool = False  # takes effect while it is moved, and not only when that is done
     mark: str = ""  # a word after the range: what a change leads to
     help: str = ""
+    top: str = ""  # a word for the highest value, if that means more than itself
+
+    @property
+    def said(self) -> str:
+        """The value as it stands in the box."""
+        return self.top if self.top and self.value >= self.high else shown(self.value)
 
     @property
     def range(self) -> Range:

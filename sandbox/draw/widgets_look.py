@@ -168,7 +168,7 @@ def _draw_slider(
     painter.line((start, middle + tick), (start, middle + 1.7 * tick), 2.0 * scale, theme.soft_text)
     size = THUMB * scale * (1.15 if hover else 1.0)
     painter.disc(x, middle, size, theme.text, edge=theme.panel, edge_width=2.0 * scale)
-    _draw_box(painter, parts.box, shown(slider.value), slider.name, attention, hover)
+    _draw_box(painter, parts.box, slider.said, slider.name, attention, hover)
 
 
 def _draw_box(

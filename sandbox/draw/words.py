@@ -26,6 +26,7 @@ __all__ = [
     "THEMES",
     "TOOLS",
     "TOOLS_HELP",
+    "TOPS",
     "VIEWS",
     "Section",
     "about",
@@ -63,6 +64,7 @@ STOPPED = Section("stopped")
 THEMES = Section("themes")
 TOOLS = Section("tools")
 TOOLS_HELP = Section("tools_help")
+TOPS = Section("tops")
 VIEWS = Section("views")
 
 

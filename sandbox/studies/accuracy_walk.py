@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.friction import Friction
+from core.hand import CELL
 from core.material import area_modulus, shape_modulus
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point
 from core.warmup import compile_kernels
-from sandbox.reading import BOX
 from sandbox.studies.bench_clock import clock
 from scenes import registry
 from scenes.parameter import Value
@@ -214,7 +214,7 @@ class Walker:
         if targets is None:
             return None
         self._next += 1
-        box = targets.pop(BOX, None)
+        box = targets.pop(CELL, None)
         began = clock()
         done, iterations, solving = self._relaxed(targets, self._cell(box))
         for _ in range(self.knobs.repeats):
@@ -265,7 +265,7 @@ class Walker:
         pairs, bodies = done.grain_contacts, done.body_contacts
         report = done.report
         drive = setup.handles[0].body
-        if drive == BOX or not setup.relaxes:
+        if drive == CELL or not setup.relaxes:
             measure = None if setup.curve is None else setup.curve.force
             assert measure is not None
             force = np.array([measure(packing, done), 0.0])

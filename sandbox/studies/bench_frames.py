@@ -18,6 +18,7 @@ from sandbox.session import Session
 from sandbox.studies.bench_clock import clock
 from sandbox.studies.bench_report import Row, Section, at_least, at_most, finite
 from scenes import registry
+from scenes.scene import HAND_STRENGTH, STRONGEST
 
 BUDGET = 12e-3  # [s] of solver time a frame
 BALANCED, MEDIAN = 3e-2, 1e-2  # relative residuals
@@ -111,6 +112,8 @@ def measure(case: Case, packing: str, frames: int) -> dict[str, Any] | None:
     settings = dict(case.settings)
     if any(p.name == "step" for p in scene.parameters):
         settings["step"] = STEP
+    if any(p.name == HAND_STRENGTH for p in scene.parameters):
+        settings[HAND_STRENGTH] = STRONGEST  # the hand is to move in every frame
     session = Session(case.scene, packing, 1, settings)
     session.build()
     if len(session.run.engine.packing) < LEAST:

@@ -76,6 +76,28 @@ def stability(options: argparse.Namespace) -> int:
     return FAILED if verdicts[FAILS] else OK
 
 
+def hand(options: argparse.Namespace) -> int:
+    """Measure what a hand can move, play every tour, let random hands loose."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies import hand as study
+    from sandbox.studies.accuracy import require_scipy
+    from sandbox.studies.hand_report import wrong
+    from sandbox.studies.paper import prepare_folder
+
+    require_scipy()
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    if done.interrupted:
+        return stopped(len(done.rows))
+    found = [*wrong(done.rows), *done.failures]
+    for line in found:
+        print(line)
+    print(f"{len(done.rows)} runs: {len(found) or 'nothing'} not as it should be")
+    print(f"tables and numbers: {folder / 'hand.md'}, runs.csv, results.json")
+    return FAILED if found else OK
+
+
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
     print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
@@ -89,5 +111,10 @@ def refuse_foreign_options(options: argparse.Namespace) -> None:
             raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
 
 
-STUDIES: dict[str, Study] = {"paper": paper, "accuracy": accuracy, "stability": stability}
+STUDIES: dict[str, Study] = {
+    "paper": paper,
+    "accuracy": accuracy,
+    "stability": stability,
+    "hand": hand,
+}
 OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}

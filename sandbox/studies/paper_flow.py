@@ -25,8 +25,13 @@ from sandbox.studies.paper_claims import (
     where,
 )
 from sandbox.studies.runs import Request, Result
+from scenes.scene import HAND_STRENGTH, STRONGEST
 
 KINDS = ("regular", "auxetic", "mixed")
+MACHINE = (
+    HAND_STRENGTH,
+    STRONGEST,
+)  # the paper drives its piston and its intruder wherever it wants
 STEADY = 0.25  # share of the drag that counts as its beginning
 FIRST_SEEDS = 5
 LAST = 0.25  # share of the piston's stroke that is averaged
@@ -43,7 +48,9 @@ def drags(quick: bool) -> list[Request]:
     """Fig. 6a: a closed box, an intruder of 5.7 radii."""
     seeds = range(1, 3 if quick else 11)
     settings = (("grains", 400), ("stroke", 10.0), ("step", 0.1)) if quick else (("grains", 600),)
-    return [Request("intruder", kind, seed, settings) for kind in KINDS for seed in seeds]
+    return [
+        Request("intruder", kind, seed, (*settings, MACHINE)) for kind in KINDS for seed in seeds
+    ]
 
 
 def _steady(result: Result) -> Floats:
@@ -148,6 +155,7 @@ def pushes(quick: bool) -> list[Request]:
         ("friction", 0.5),
         ("orifice", 3.0),
         ("angle", 45.0),
+        MACHINE,
         ("step", 0.1 if quick else 0.05),
     )
     return [Request("hopper", kind, seed, settings) for kind in KINDS for seed in seeds]

@@ -18,7 +18,6 @@ from core.rigid import Point, RigidBody, RigidWorld, wall
 from sandbox.studies.stability_watch import Watch
 
 WALL = 1.6  # thickness of the walls [R]
-STRONG = 1e9  # [k R] of a hand that nothing stops
 MOST = 200_000  # force evaluations of one increment: a bound, far above what a case should need
 KINDS = ("regular", "auxetic", "mixed")
 
@@ -152,7 +151,6 @@ def walls(width: float, height: float) -> tuple[RigidWorld, list[Point]]:
         polygons=[(corners, 0.0)],
         axis=(0.0, -1.0),
         travel=(-4.0, height),
-        force_limit=STRONG,
     )
     return RigidWorld([box, lid]), [(0.0, 0.0), (width, 0.0), (width, high), (0.0, high)]
 

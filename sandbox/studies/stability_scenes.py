@@ -16,7 +16,7 @@ from sandbox.studies.stability_rigs import KINDS
 from sandbox.studies.stability_watch import Watch
 from scenes import registry
 from scenes.parameter import Value
-from scenes.scene import Scene
+from scenes.scene import HAND_STRENGTH, STRONGEST, Scene
 
 # The smallest packings that a scene takes, or little more.
 SMALL: Mapping[str, Value] = {
@@ -24,12 +24,13 @@ SMALL: Mapping[str, Value] = {
     "width": 12.0,
     "intruder_radius": 2.0,
     "max_iterations": 100_000,
+    HAND_STRENGTH: STRONGEST,
 }
 FAR = 1e6  # [R]
 SCRIPTED = 12  # increments of the scripted drive
 WILD = 6  # increments after each wish of a wild hand
 TO_THE_END = 800
-# A hand of 40 k R is stronger than a contact of stiffness 50 k: what it crushes is told and taken back.
+# A testing machine is stronger than any contact: what it crushes is told and taken back.
 CRUSHED = (StopReason.COLLAPSED, StopReason.SUNK, StopReason.ITERATION_LIMIT, TIME_LIMIT)
 
 

@@ -137,7 +137,10 @@ class App:
         self.brush = Brush(self)
         self.arrows = Arrows(self)
         self.canvas = Canvas(self)
-        own = [ParameterSection(name, self.settings) for name in ("grains", "geometry", "solver")]
+        own = [
+            ParameterSection(name, self.settings)
+            for name in ("hand", "grains", "geometry", "solver")
+        ]
         self.panel = Panel(self, folded={"solver", "files", "looks"})
         self.panel.sections += [
             GeneralSection(self),

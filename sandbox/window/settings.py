@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sandbox.window.app import App
 
 SOLVER = ("step", "tolerance", "max_iterations")
+HAND = ("hand_strength",)
 GRAINS = (
     "poisson_ratio",
     "regular_poisson_ratio",
@@ -34,9 +35,10 @@ PATIENCE = 1.0  # with a change that the solver does not take: then the panel sh
 
 def section_of(parameter: Parameter) -> str:
     """In which section a parameter stands."""
-    if parameter.name in SOLVER:
-        return "solver"
-    return "grains" if parameter.name in GRAINS else "geometry"
+    for section, names in (("solver", SOLVER), ("hand", HAND), ("grains", GRAINS)):
+        if parameter.name in names:
+            return section
+    return "geometry"
 
 
 @dataclass
@@ -82,11 +84,11 @@ class Settings(Silent):
         """Ask for a value. What needs a new scene waits until it is ``done``."""
         try:
             if isinstance(value, str):
-                wanted = parameter.parse(typed(value))
+                said = value.strip().lower() == words.TOPS.get(parameter.name, "").lower()
+                wanted = parameter.parse(parameter.top if parameter.top and said else typed(value))
             else:
-                wanted = parameter.check(
-                    round(value) if isinstance(parameter.default, int) else value
-                )
+                whole = parameter.kind == "whole number"
+                wanted = parameter.check(round(value) if whole else value)
         except InputError as error:
             self.app.toast(words.say(message(error)))
             return
@@ -191,4 +193,5 @@ class ParameterSection:
             at_once=parameter.live,
             mark=mark,
             help=f"{numbers} {about}",
+            top=words.TOPS[parameter.name] if parameter.top else "",
         )

@@ -14,6 +14,7 @@ LENGTH = 0.09  # of a tick [s]
 LOUDNESS = 0.35  # of full scale
 # Pitch at the beginning and at the end [Hz], and how fast a tick dies away [1/s].
 TICKS = {
+    "locked": (140.0, 90.0, 20.0),
     "clog": (180.0, 120.0, 30.0),
     "arch": (520.0, 660.0, 45.0),
     "avalanche": (900.0, 300.0, 60.0),

@@ -453,7 +453,6 @@ def box_of_grains(count: int = 25) -> tuple[Packing, RigidWorld]:
         position=(0.0, high),
         segments=[(-9.0, 0.0, 30.0, 0.0, 0.0)],
         axis=(1.0, 0.0),
-        force_limit=1e9,
     )
     return packing, RigidWorld([floor, left, right, plate])
 

@@ -18,7 +18,6 @@ from tests.core import examples
 MU = 0.4
 STIFFNESS = 50.0  # C of a grain unless said otherwise [k]
 TANGENTIAL = TANGENTIAL_STIFFNESS * STIFFNESS
-FAR = 1e9  # [k R], a hand that never gives way
 
 
 def go(
@@ -43,7 +42,6 @@ def plate(name: str, y: float, axis: Point) -> RigidBody:
         position=(0.0, y),
         segments=[(-60.0, 0.0, 60.0, 0.0, 0.0)],
         axis=axis,
-        force_limit=FAR,
     )
 
 
@@ -250,7 +248,6 @@ def test_a_peg_pushed_forth_and_back(mu: float | None) -> None:
         position=(float(engine.packing.x[12]), float(engine.packing.y[12])),
         discs=[(0.0, 0.0, 0.85)],
         axis=(1.0, 0.0),
-        force_limit=FAR,
     )
     world = RigidWorld([*engine.world.bodies, peg])
     friction = None if mu is None else Friction(mu, 24)

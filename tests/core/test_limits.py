@@ -23,7 +23,6 @@ def press(stiffness: float, step: float = 0.05) -> Quasistatic:
         (0.0, 2.0),
         polygons=[(PLATE, 0.0)],
         axis=(0.0, -1.0),
-        force_limit=1e9,
     )
     floor = RigidBody("floor", segments=[(-4.0, -0.5, 4.0, -0.5, 0.5)])
     packing = Packing([0.0], [1.0], 1.0, 0.8, stiffness)

@@ -7,7 +7,6 @@ them anew after a wanted change, set SANDBOX_REGENERATE_GOLDEN=1, run this file,
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -180,17 +179,3 @@ def test_lamp_bounds_the_force_error() -> None:
     assert lamp(replace(frame, residual=0.0082), DARK).error == "forces balance within 1 %"
     assert lamp(replace(frame, residual=3.0), DARK).error == words.UNKNOWN_FORCES
     assert lamp(replace(frame, residual=float("nan")), DARK).error == words.NO_FORCES
-
-
-@pytest.mark.parametrize("view", ["kind", "skin", "pressure"])
-def test_thousand_grains_with_chains_in_time(view: str) -> None:
-    # Measured: 6 to 8 ms on a core of 2023; the bound allows for a slow or a busy machine.
-    frame = intruder_frame(33)
-    assert frame.grains > 1000
-    renderer = Renderer((1280, 720), view=view, chains=True)
-    times = []
-    for _ in range(12):
-        begun = time.perf_counter()
-        renderer.draw(frame)
-        times.append(time.perf_counter() - begun)
-    assert min(times) < 0.025

@@ -7,13 +7,15 @@ import pytest
 
 from sandbox.commands import Change, Grab, Move, Protocol, Recall, Reset, Undo
 from sandbox.session import Session
+from scenes.scene import STRONGEST
 from tests.sandbox.test_time import built, do, go
 
 
 @pytest.fixture(scope="module")
 def clogged() -> Session:
     """A narrow hopper after its stroke."""
-    session = Session("hopper", "regular", 1, {"grains": 120, "width": 16.0, "orifice": 2.0})
+    settings = {"grains": 120, "width": 16.0, "orifice": 2.0, "hand_strength": STRONGEST}
+    session = Session("hopper", "regular", 1, settings)
     session.build()
     do(session, Protocol(True))
     go(session, 200)
@@ -76,7 +78,8 @@ def test_frames_share_the_tuple_of_events() -> None:
 
 @pytest.mark.parametrize("scene", ["intruder", "couette", "avalanches"])
 def test_avalanches_are_falls_of_the_force_and_rare(scene: str) -> None:
-    session = Session(scene, "regular", 1, {"grains": 160} if scene != "intruder" else None)
+    settings = {"hand_strength": STRONGEST} if scene == "intruder" else {"grains": 160}
+    session = Session(scene, "regular", 1, settings)
     session.build()
     do(session, Protocol(True))
     increments = len(go(session, 120))
@@ -101,6 +104,62 @@ def test_a_hand_that_turns_back_and_a_change_are_no_avalanche() -> None:
         do(session, Change("regular_poisson_ratio", value))
         go(session, 1)
     assert session.frame().events == before
+
+
+def test_a_locked_hand_is_announced_with_what_holds_and_can_be_drawn_back() -> None:
+    session = Session("hopper", "regular", 1, {"grains": 120, "width": 16.0, "orifice": 2.0})
+    session.build()
+    do(session, Protocol(True))
+    go(session, 200)
+    assert session.idle
+    assert not session.frame().protocol
+    frame = session.frame()
+    event = frame.events[-1]
+    assert event.kind == "locked"
+    assert event.text == frame.notices[0]
+    assert "locked at 6 k R: an arch of" in event.text
+    assert 0.9 * 6.0 < event.force <= 6.0 * 1.02
+    assert frame.highlight is not None
+    assert f"{int(frame.highlight.sum())} grains" in event.text
+    handle = frame.handles[0]
+    assert (handle.fx, handle.fy) == pytest.approx((0.0, -event.force))
+    do(session, Grab("piston"), Move("piston", handle.x, handle.y + 0.5))
+    go(session, 20)
+    assert not session.run.locked
+    assert session.frame().handles[0].y == pytest.approx(handle.y + 0.5)
+    do(session, Move("piston", handle.x, handle.y - 9.0))
+    go(session, 100)
+    kinds = [each.kind for each in session.frame().events]
+    assert kinds.count("locked") == 2, "pushed anew and locked anew"
+
+
+def test_forces_are_felt_along_the_pull_also_while_the_body_stands_still() -> None:
+    """A disc that is locked: what is plotted is what the hand gives, to the end, and no more than it has."""
+    session = Session("intruder", "regular", 1, {"grains": 200, "intruder_radius": 3.0})
+    session.build()
+    do(session, Protocol(True))
+    go(session, 400)
+    assert session.run.locked
+    force = session.history.column("resisting")
+    assert force[-1] == pytest.approx(session.run.hand_force)
+    assert 0.9 * 0.6 < force[-1] <= 0.6 * 1.02
+    assert force[1:].max() <= 0.6 * 1.02
+    assert session.history.column("stroke")[-3:] == pytest.approx(session.run.way, abs=1e-6)
+
+
+def test_a_stronger_hand_goes_on_where_a_weaker_one_was_locked() -> None:
+    settings = {"hand_strength": 2.0, "grains": 120, "width": 16.0, "orifice": 2.0}
+    session = Session("hopper", "regular", 1, settings)
+    session.build()
+    x, y = session.run.setup.world["piston"].position
+    do(session, Grab("piston"), Move("piston", x, y - 9.0))
+    go(session, 300)
+    assert session.run.locked
+    stroke = session.history[-1].stroke
+    do(session, Change("hand_strength", 20.0))
+    go(session, 40)
+    assert session.history[-1].stroke > stroke + 0.2
+    assert session.history[-1].hand_strength == 20.0
 
 
 def test_a_hopper_under_gravity_clogs_and_flows_again() -> None:

@@ -125,7 +125,8 @@ def test_a_flung_intruder_passes_through_nothing() -> None:
 
 
 def test_a_body_pressed_into_a_wall_stops_and_the_session_rests() -> None:
-    session = intruder()
+    session = Session("intruder", "mixed", 1, {**SMALL, "hand_strength": 1000.0})
+    session.build()
     x, y = session.run.setup.world["intruder"].position
     drag(session, Grab("intruder"), Move("intruder", x - 100.0, y))
     run(session, 400)

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from sandbox import language, tours
-from sandbox.commands import Change, Command, DrawWall, Grab, Move, Place, Release
 from sandbox.draw.views import VIEWS
 from sandbox.frame import Frame
 from sandbox.history import Event
-from sandbox.session import Session
 from sandbox.tours import Condition, Moment, Step, met
 from scenes import registry
 from tests.draw.frames import intruder_frame
 
-EVENTS = {"clog", "arch", "avalanche"}
-PATIENCE = 400  # increments in which a step must be done
-AHEAD = 0.4  # of the hand, in front of what it pulls [R]
+EVENTS = {"locked", "clog", "arch", "avalanche"}
 ALL = [(scene, step) for scene in tours.scenes() for step in tours.steps(scene)]
 NAMES = [f"{scene}.{step.key}" for scene, step in ALL]
 
@@ -59,6 +56,7 @@ def test_steps_speak_of_what_exists(scene: str, step: Step) -> None:
         until.view,
         until.setting,
         until.out,
+        until.force,
         until.grains,
         until.walls,
     )
@@ -92,10 +90,24 @@ def test_conditions() -> None:
     assert met(Condition(setting="friction", below=0.3), then, moment(other))
     assert not met(Condition(setting="friction", below=0.1), then, moment(other))
     assert met(Condition(out=4), then, moment(replace(frame, grains_out=4)))
+    assert met(Condition(force=1.5), then, moment(replace(frame, curve_force=np.array([9.0, 1.5]))))
+    assert not met(
+        Condition(force=1.5), then, moment(replace(frame, curve_force=np.array([9.0, 1.4])))
+    )
     assert not met(Condition(grains=1), then, moment(frame))
     drawn = replace(frame, bodies=(*frame.bodies, frame.bodies[0]))
     assert met(Condition(walls=1), then, moment(drawn))
     assert not met(Condition(walls=1), then, then)
+
+
+def test_one_of_several_panes_is_enough() -> None:
+    """Where one hand drives all, one packing may be locked while the others move."""
+    frame = intruder_frame(6)
+    handle = frame.handles[0]
+    away = replace(frame, handles=(replace(handle, x=handle.x + 3.0),))
+    then, now = Moment.of([frame, frame], "kind"), Moment.of([frame, away], "kind")
+    assert met(Condition(moved=handle.name, by=2.9), then, now)
+    assert not met(Condition(moved=handle.name, by=3.1), then, now)
 
 
 def test_grains_that_leave_are_not_taken_for_erased_ones() -> None:
@@ -104,62 +116,3 @@ def test_grains_that_leave_are_not_taken_for_erased_ones() -> None:
     then = moment(frame)
     assert met(Condition(grains=3), then, moment(fewer))  # three more than there were
     assert not met(Condition(grains=4), then, moment(fewer))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", tours.scenes())
-def test_each_step_can_be_done(scene: str) -> None:
-    """By a hand that pulls the first handle where its scene would drive it."""
-    session: Session | None = None
-    for step in tours.steps(scene):
-        if step.packings:
-            session = Session(scene, step.packings[0], 1, dict(step.settings))
-            session.build()
-        assert session is not None
-        until = step.until
-        if until is None:
-            continue
-        view = step.view or "kind"
-        then = moment(session.frame(), view)
-        for command in asked(until, session):
-            session.submit(command)
-        for _ in range(PATIENCE):
-            now = moment(session.frame(), until.view or view)
-            if met(until, then, now):
-                break
-            pull(session, until.moved)
-        assert met(until, then, moment(session.frame(), until.view or view)), step.key
-        if until.moved:
-            session.submit(Release(until.moved))
-
-
-def asked(until: Condition, session: Session) -> list[Command]:
-    """Commands that do what is asked for, apart from pulling."""
-    _, ymin, xmax, ymax = session.frame().bounds
-    if until.setting:
-        return [Change(until.setting, 0.25)]
-    if until.grains:
-        return [
-            Place(xmax - 4.0, ymin + share * (ymax - ymin), "auxetic")
-            for share in (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85)
-        ]
-    if until.walls:
-        return [DrawWall(((xmax - 8.0, ymin + 3.0), (xmax - 8.0, ymin + 5.0)))]
-    return []
-
-
-def pull(session: Session, name: str) -> None:
-    """One increment, the hand a little ahead of the handle; nobody pulls where grains go on by themselves."""
-    if not name and session.run.setup.drag > 0.0:
-        session.advance(2000)
-        return
-    handles = {handle.body: handle for handle in session.run.setup.handles}
-    handle = handles[name or next(iter(handles))]
-    frame = session.frame()
-    state = next(each for each in frame.handles if each.name == handle.body)
-    session.submit(Grab(handle.body))
-    way = handle.direction
-    session.submit(Move(handle.body, state.x + AHEAD * way[0], state.y + AHEAD * way[1]))
-    for _ in range(200):
-        if session.advance(2000) or session.idle:
-            return

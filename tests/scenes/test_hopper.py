@@ -9,6 +9,7 @@ from core.errors import InputError
 from sandbox.commands import Protocol
 from sandbox.session import Session
 from scenes import registry
+from scenes.scene import STRONGEST
 
 
 def test_a_clogged_hopper_points_at_its_arch() -> None:
@@ -19,6 +20,7 @@ def test_a_clogged_hopper_points_at_its_arch() -> None:
         "step": 0.1,
         "stroke": 5.0,
         "friction": 0.8,
+        "hand_strength": STRONGEST,
     }
     session = Session("hopper", "regular", 1, settings)
     session.build()

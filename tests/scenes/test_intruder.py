@@ -8,6 +8,7 @@ import pytest
 from core.observables import force_drops
 from sandbox.commands import Protocol
 from sandbox.session import Session
+from scenes.scene import STRONGEST
 
 STROKE = 7.0  # [R]: three and a half diameters, some ten force drops
 
@@ -17,7 +18,7 @@ def drags() -> dict[str, np.ndarray]:
     """Drag force [k R] along the stroke for each packing, same seed and geometry."""
     curves = {}
     for packing in ("regular", "mixed", "auxetic"):
-        settings = {"grains": 300, "stroke": STROKE}
+        settings = {"grains": 300, "stroke": STROKE, "hand_strength": STRONGEST}
         session = Session("intruder", packing, 1, settings)
         session.build()
         session.submit(Protocol(True))
