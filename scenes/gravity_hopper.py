@@ -26,7 +26,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Outlet,
     Progress,
     Remarks,
     Scene,
@@ -157,7 +156,7 @@ class GravityHopper(Scene):
             handles=(Handle("funnel", "funnel", (1.0, 0.0), 3.0),),
             bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
             outline=[*left, *right],
-            outlet=Outlet(-DROP, shape.opening),
+            outlet=shape.outlet(-DROP, beside=False),  # they are seen to sink on
             friction=float(values["friction"]),
             gravity=gravity,
             drag=drag,
@@ -216,7 +215,13 @@ class GravityHopper(Scene):
     def general_checks(self, setup: Setup, track: Track) -> list[Check]:
         funnel = setup.world["funnel"]
         moved = funnel.position[0] - funnel.home[0]
-        there = replace(setup, outline=[(x + moved, y) for x, y in setup.outline])
+        outlet = setup.outlet
+        assert outlet is not None
+        there = replace(
+            setup,
+            outline=[(x + moved, y) for x, y in setup.outline],
+            outlet=replace(outlet, below=tuple((x + moved, y) for x, y in outlet.below)),
+        )
         return super().general_checks(there, track)
 
 
