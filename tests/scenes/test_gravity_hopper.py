@@ -109,7 +109,8 @@ def test_a_grain_that_sinks_does_not_hang() -> None:
     session = hopper()
     setup = session.run.setup
     long = 100
-    track = Track(*(np.zeros(long) for _ in range(4)), np.ones(long, dtype=bool), 60)
+    none = np.zeros(long)
+    track = Track(none, none, none, none, np.ones(long, dtype=bool), 60)
     setup.packing.state[:2, 0] = 0.0, setup.bounds[3] - 1.0
 
     def hanging() -> Check:
