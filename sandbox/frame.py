@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from core.squeezed import squeezed_beyond
 from sandbox.history import Event
 from scenes.parameter import Value
 
@@ -194,6 +195,11 @@ class Frame:
     def auxetic(self) -> BoolArray:
         """Which grains are auxetic, (N,)."""
         return np.less(self.poisson_ratio, 0.0)
+
+    @property
+    def squeezed(self) -> BoolArray:
+        """Which grains are squeezed further than what they are made of could be, (N,): see ``core.squeezed``."""
+        return squeezed_beyond(self.p, self.q1, self.q2, self.rest_radius, self.poisson_ratio)
 
     @property
     def converged(self) -> bool:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from core.errors import InputError
 from sandbox import arguments
-from sandbox.exit_codes import DIFFERENT, INTERRUPTED, OK
+from sandbox.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
 from sandbox.studies import commands as studies
 
 if TYPE_CHECKING:
@@ -88,8 +88,10 @@ def record(options: argparse.Namespace) -> int:
             outcome = films.record(sessions[0], steps, output)
         else:
             outcome = record_side_by_side(sessions, steps, output)
-    _report(sessions, outcome, output)
-    return INTERRUPTED if outcome.interrupted else OK
+    all_hold = _report(sessions, outcome, output)
+    if outcome.interrupted:
+        return INTERRUPTED
+    return OK if all_hold else CHECK_FAILED
 
 
 def replay(options: argparse.Namespace) -> int:
@@ -221,12 +223,13 @@ def _check_packing_of_some_scene(name: str) -> None:
         raise InputError(f"unknown packing {name!r}: choose {', '.join(known)}")
 
 
-def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None) -> None:
-    """What a finished run came to, a line for each packing, and the scene's own checks."""
+def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None) -> bool:
+    """What a finished run came to, a line for each packing, and the scene's own checks; False where one of them fails."""
     if outcome.interrupted:
         print(_interrupted(outcome, output), file=sys.stderr)
         if not outcome.increments:
-            return
+            return True
+    all_hold = True
     for session in sessions:
         print(f"{session.packing}: " * (len(sessions) > 1) + _summary(session, outcome))
         if session.run.locked:
@@ -234,6 +237,8 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
         for check in session.checks():
             verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
             print(f"  {verdict:<5}  {check.name}: {check.measured}")
+            all_hold &= check.holds is not False
+    return all_hold
 
 
 def _interrupted(outcome: Outcome, output: Output | None) -> str:

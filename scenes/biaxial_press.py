@@ -121,6 +121,11 @@ class BiaxialPress(Scene):
             way_down(side, float(values["compression"])) / float(values["step"]) + 1e-6
         )
 
+    def region(self, setup: Setup) -> list[Point]:
+        """The square between floor and lid."""
+        half = 0.5 * setup.world["lid"].position[1]
+        return [(0.0, 0.0), (half, half), (0.0, 2.0 * half), (-half, half)]
+
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _balance(setup), _pushes_back(track)]
 

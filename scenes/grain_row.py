@@ -30,6 +30,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    below_height,
     hand,
     solver,
 )
@@ -128,6 +129,9 @@ class GrainRow(Scene):
                 lambda _, increment: sideways(world, increment),
             ),
         )
+
+    def region(self, setup: Setup) -> list[Point]:
+        return below_height(setup.outline, setup.world["piston"].position[1])
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         piston = setup.world["piston"]

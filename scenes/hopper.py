@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from core.arches import arch
 from core.errors import InputError
 from core.generate import pack
-from core.rigid import Point, RigidBody, RigidWorld, wall
+from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -27,6 +27,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    below_height,
     hand,
     recipe,
     solver,
@@ -36,6 +37,9 @@ from scenes.text import Text
 WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]
 PISTON = 1.6  # thickness of the piston [R]
 LEFT_BEHIND = 0.8  # a grain whose centre is this far below the lips has left [R]
+ASIDE = (
+    20.0  # how far the space under the funnel goes on beside it: no burst throws a grain so far [R]
+)
 LIFT = 3.0  # how far the piston may be drawn back [R]
 LEAST_CHANNEL = 4.0  # height of the filled channel above the funnel [R]
 DIAMETER = 2.0  # of a large grain [R]
@@ -148,7 +152,7 @@ class Hopper(Scene):
             handles=(Handle("piston", "piston", (0.0, -1.0), half_width),),
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
-            outlet=Outlet(-LEFT_BEHIND, shape.opening),
+            outlet=shape.outlet(-LEFT_BEHIND, beside=True),
             friction=float(values["friction"]),
         )
 
@@ -159,6 +163,9 @@ class Hopper(Scene):
         if depth > end + 1e-9:
             return None
         return {"piston": (piston.home[0], piston.home[1] - depth)}
+
+    def region(self, setup: Setup) -> list[Point]:
+        return below_height(setup.outline, setup.world["piston"].position[1])
 
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
         """Clogged: the force has risen over a stroke of one grain diameter while nothing left; an arch: over half of that.
@@ -222,6 +229,16 @@ class Shape:
         funnel = (self.half_width + self.lip_x) * (self.neck - self.lip_y)
         grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
         self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
+
+    def outlet(self, y: float, beside: bool) -> Outlet:
+        """Grains leave below ``y`` [R], with ``beside`` also where they lie under the funnel's sides."""
+        lip, neck = (self.lip_x, self.lip_y), (self.half_width, self.neck)
+        face: list[Point] = [lip, neck, (self.half_width, self.neck + 1.0)]
+        end, shoulder, _ = offset_path(face, WALL, closed=False)
+        far = self.half_width + ASIDE
+        right: list[Point] = [lip, end, shoulder, (far, shoulder[1]), (far, y)]
+        left: list[Point] = [(-x, y) for x, y in reversed(right)]
+        return Outlet(y, self.opening, (*right, *left), end[0] if beside else math.inf)
 
     def check(self, least_channel: float) -> None:
         """Raises InputError unless the lips stand within the channel, and the grains fill so much of it [R] above the funnel."""

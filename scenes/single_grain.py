@@ -29,6 +29,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    below_height,
     hand,
     hand_strength,
 )
@@ -154,6 +155,9 @@ class SingleGrain(Scene):
         if "poisson_ratio" in changed:
             nu = float(values["poisson_ratio"])
             setup.packing.poisson_ratio = np.copysign(nu, setup.packing.poisson_ratio)
+
+    def region(self, setup: Setup) -> list[Point]:
+        return below_height(setup.outline, setup.world["plate"].position[1])
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
         plate = setup.world["plate"]

@@ -31,6 +31,7 @@ from sandbox.draw.pane import (
 )
 from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Curve, draw_plot, finite_part
+from sandbox.draw.squeezed import draw_squeezed
 from sandbox.draw.status import draw_status
 from sandbox.draw.text import Type
 from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
@@ -211,11 +212,12 @@ class Renderer:
         look: Look,
         chain_top: float | None,
     ) -> None:
-        """Grains, bodies, chains."""
+        """Grains, bodies, chains, and crosses where a grain is no longer to be believed."""
         draw_grains(painter, rect, camera, frame, look)
         draw_bodies(painter, rect, camera, frame)
         if chain_top is not None:
             draw_chains(painter, rect, camera, frame, chain_top, look.values is not None)
+        draw_squeezed(painter, rect, camera, frame)
         draw_cell(painter, rect, camera, frame)
 
     def _looks(self, frames: Sequence[Frame]) -> tuple[list[Look], float | None]:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
 import pygame
 
 from sandbox.draw import words
@@ -166,6 +167,10 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
     if frame.grains_out and not several:
         out = words.GRAINS_OUT
         items.append(_Item(out.format(count=frame.grains_out), 5, out.format(count="000")))
+    beyond = sum(int(np.count_nonzero(frame.squeezed)) for frame in frames)
+    if beyond:
+        squeezed = words.SQUEEZED
+        items.append(_Item(squeezed.format(count=beyond), 6, squeezed.format(count="00")))
     if any(frame.protocol for frame in frames):
         items.append(_Item(words.DRIVE, 2))
     if paused:

@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from core.squeezed import AUXETIC_AREA
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, floats
@@ -21,7 +22,6 @@ Floats = NDArray[np.float64]
 OUTLINE = 1.5  # width on screen at scale 1 [px]
 FADED = 0.35  # how far grains recede into the ground when force chains are shown
 LARGE = 20.0  # reference radius on screen from which grains recede less [px]
-CLOSED_AREA = 0.60  # the mark has closed when a grain has shrunk to this share of its area
 SHADOW = 0.85  # how far they recede where the chains are all that is shown
 TOOTH_FROM = 9.0  # below this radius on screen a made grain has no tooth [px]
 GOLDEN = 0.6180339887498949  # multiples of it, whole parts left out, never repeat and never cluster
@@ -39,10 +39,10 @@ class Look:
 
 
 def mark_openness(p: Floats, q1: Floats, q2: Floats, rest_radius: Floats) -> Floats:
-    """How far the mark of an auxetic grain is open: 1 at rest or larger, 0 when well squeezed."""
+    """How far the hole and the mark of an auxetic grain are open: 1 at rest or larger, 0 from where a real one has closed."""
     with np.errstate(all="ignore"):
         area = (p * p - q1 * q1 - q2 * q2) / (rest_radius * rest_radius)
-    return np.clip((area - CLOSED_AREA) / (1.0 - CLOSED_AREA), 0.0, 1.0)
+    return np.clip((area - AUXETIC_AREA) / (1.0 - AUXETIC_AREA), 0.0, 1.0)
 
 
 def outline_width(painter: Painter, camera: Camera) -> float:
@@ -65,7 +65,7 @@ def draw_grains(
     look: Look,
 ) -> None:
     """All grains, auxetic ones with their mark, and those pointed at with a bright rim."""
-    index, x, y = _places(frame)
+    index, x, y = places(frame)
     if not index.size:
         return
     canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
@@ -140,7 +140,7 @@ def made_angle(label: NDArray[np.int64]) -> Floats:
     return angle
 
 
-def _places(frame: Frame) -> tuple[NDArray[np.intp], Floats, Floats]:
+def places(frame: Frame) -> tuple[NDArray[np.intp], Floats, Floats]:
     """Which grains are drawn where: each once, and in a periodic cell their images too."""
     if frame.box is None:
         return np.arange(frame.grains), floats(frame.x), floats(frame.y)

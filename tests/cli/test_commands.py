@@ -140,6 +140,19 @@ def test_same_seed_same_state_with_and_without_frames(tmp_path: Path) -> None:
     assert imageio.v2.imread(tmp_path / "last.png").shape == (240, 320, 3)
 
 
+@pytest.mark.parametrize("kinds", [["--packing", "mixed"], ["--compare", "regular,mixed"]])
+def test_record_whose_scene_fails_its_check_writes_all_and_says_so(
+    tmp_path: Path, kinds: list[str]
+) -> None:
+    words = [*QUICK, *kinds, "--set", "max_iterations=10", "--set", "tolerance=1e-6"]
+    done = sandbox(tmp_path, "record", *words, "--out", "film.gif", "--data", "run.csv")
+    assert done.returncode == 1, done.stderr
+    assert "  FAILS  at least nine of ten increments converge: 0" in done.stdout
+    assert len(imageio.v2.mimread(tmp_path / "film.gif", memtest=False)) == STEPS
+    assert len(rows_of(tmp_path / "run.csv")) == (STEPS + 1) * (1 + kinds[-1].count(","))
+    assert "Traceback" not in done.stderr
+
+
 def test_record_makes_an_animation(tmp_path: Path) -> None:
     done = sandbox(tmp_path, "record", *QUICK, "--out", "film.gif", "--packing", "auxetic")
     assert done.returncode == 0, done.stderr

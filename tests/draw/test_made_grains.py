@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from core import squeezed
 from sandbox.draw import raster
+from sandbox.draw.raster import made_grains
 from tests.draw import slow_raster as slow
 
 SHAPE = (64, 64)
@@ -109,6 +111,23 @@ def test_hole_closes_as_the_grain_shrinks(tooth: float) -> None:
     assert areas == sorted(areas)
     assert areas[0] < 0.5 * areas[-1]
     assert areas[-1] > 0.15 * np.pi * 40.0**2
+
+
+@pytest.mark.parametrize("tooth", [NO_TOOTH, TOOTH])
+def test_what_is_drawn_is_what_the_limits_were_derived_from(tooth: float) -> None:
+    """Ring and open hole have the area of the material that ``core.squeezed`` says is left when there is no hole any more."""
+    p, shape = 200.0, (420, 420)
+    for openness, area in ((None, squeezed.RING_AREA), (1.0, squeezed.AUXETIC_AREA)):
+        seen = drawn(210.0, 210.0, p, openness=openness, tooth=tooth, shape=shape)
+        assert seen.sum() / (np.pi * p**2) == pytest.approx(area, abs=0.006)
+    assert (squeezed.RING_WALL, squeezed.TIP, squeezed.MOUTH) == (
+        made_grains.WALL,
+        made_grains.TIP,
+        made_grains.MOUTH,
+    )
+    assert squeezed.WING == made_grains.WING_U
+    assert squeezed.NOTCH == made_grains.NOTCH_OPEN
+    assert pytest.approx(made_grains.NOTCH_OPEN - made_grains.HINGE) == squeezed.APEX
 
 
 def test_hole_is_cut_to_the_rim_and_a_tooth_bars_the_way() -> None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -19,8 +20,10 @@ from sandbox.draw import words
 from sandbox.draw.overlays import Hand
 from sandbox.draw.render import Renderer
 from sandbox.draw.status import lamp
-from sandbox.draw.theme import AUXETIC, DARK, HAND, LIGHT, REGULAR, channels
-from sandbox.frame import Frame
+from sandbox.draw.text import Type
+from sandbox.draw.theme import AUXETIC, DARK, HAND, LIGHT, REGULAR, Theme, channels
+from sandbox.draw.views import VIEWS
+from sandbox.frame import Contacts, Frame
 from tests.draw.frames import empty_frame, hopper_frame, intruder_frame
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -78,6 +81,50 @@ def test_same_frames_same_pictures() -> None:
     first, second = Renderer((640, 400)), Renderer((640, 400))
     for frame in frames:
         assert np.array_equal(first.image(frame), second.image(frame))
+
+
+@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("theme", [DARK, LIGHT])
+def test_a_cross_marks_a_grain_that_is_squeezed_too_far(theme: Theme, view: str) -> None:
+    """By its form, and in the colour of the text on that of the ground: legible on every view's colours."""
+    frame = silent(intruder_frame(8, "regular"))
+    frame = replace(frame, handles=(), contacts=Contacts.none(), spin=None)
+    frame = replace(frame, q1=0.0 * frame.q1, q2=0.0 * frame.q2, p=frame.rest_radius)
+    assert not frame.squeezed.any()
+    p = frame.rest_radius.copy()
+    p[np.argmax(frame.rest_radius)] *= 0.7
+    plain, marked = (
+        canvas_of(Renderer((640, 400), theme=theme.name, view=view), each)
+        for each in (frame, replace(frame, p=p))
+    )
+    ink = np.array(channels(theme.text))
+    new = (marked == ink).all(axis=-1) & (plain != ink).any(axis=-1)
+    rows, columns = np.nonzero(new)
+    assert len(rows) > 15
+    across, up = columns - columns.mean(), rows - rows.mean()
+    assert np.abs(np.abs(across) - np.abs(up)).max() < 4.0  # along the two diagonals
+
+
+def test_the_status_line_counts_the_squeezed_of_all_packings(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said: list[str] = []
+    render = Type.render
+
+    def spy(self: Type, text: str, *rest: Any, **more: Any) -> Any:
+        said.append(text)
+        return render(self, text, *rest, **more)
+
+    monkeypatch.setattr(Type, "render", spy)
+    frame = intruder_frame(8, "auxetic")
+    rest = replace(frame, q1=0.0 * frame.q1, q2=0.0 * frame.q2, p=frame.rest_radius)
+    shrunk = replace(rest, p=np.where(np.arange(frame.grains) < 3, 0.85, 1.0) * rest.rest_radius)
+    Renderer((1280, 720)).image(rest)
+    assert not [text for text in said if "squeezed" in text]
+    Renderer((1280, 720)).image(shrunk)
+    assert "× 3 squeezed too far" in said
+    Renderer((1280, 720)).image([shrunk, rest, shrunk])
+    assert "× 6 squeezed too far" in said
 
 
 @pytest.mark.parametrize("theme", ["dark", "light"])

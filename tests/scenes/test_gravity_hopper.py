@@ -12,6 +12,7 @@ from sandbox.commands import Grab, Move, Protocol
 from sandbox.log import read_log
 from sandbox.replay import replay
 from sandbox.session import Session
+from scenes.scene import Check, Track
 
 
 def hopper(kind: str = "mixed", seed: int = 1, **settings: object) -> Session:
@@ -101,3 +102,22 @@ def test_shapes_that_cannot_be_are_refused_before_anything_is_built() -> None:
     }.items():
         with pytest.raises(InputError, match=name):
             Session("gravity_hopper", "mixed", 1, settings)
+
+
+def test_a_grain_that_sinks_does_not_hang() -> None:
+    """Let go by a shaken funnel at any time; what hangs is a grain that touches nothing and stays."""
+    session = hopper()
+    setup = session.run.setup
+    long = 100
+    none = np.zeros(long)
+    track = Track(none, none, none, none, np.ones(long, dtype=bool), 60)
+    setup.packing.state[:2, 0] = 0.0, setup.bounds[3] - 1.0
+
+    def hanging() -> Check:
+        return next(c for c in session.scene.checks(setup, track) if "hangs" in c.name)
+
+    assert hanging().holds, hanging().measured
+    before = setup.packing.state.copy()
+    setup.gravity = (0.0, 0.0)
+    assert hanging().holds is False
+    assert np.array_equal(setup.packing.state, before)
