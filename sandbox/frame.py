@@ -159,6 +159,7 @@ class Frame:
     curve_label: str  # e.g. "force on the intruder [k R]"
 
     stroke_label: str = "stroke [R]"
+    hand_limit: float = math.inf  # strength of the hand [k R], where its force is what is plotted
 
     # Only in a periodic cell: width and height (inf where open) and the shift of the image above.
     box: tuple[float, float, float] | None = None  # [R]

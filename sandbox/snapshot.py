@@ -88,6 +88,7 @@ def take(view: View) -> Frame:
         if curve is None
         else curve.force_label,
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
+        hand_limit=view.setup.solver.hand_strength if curve is None else math.inf,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
         residual_force=view.last.unbalanced.copy(),

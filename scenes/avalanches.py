@@ -175,6 +175,8 @@ def taking_part(packing: Packing, before: Increment, now: Increment) -> NDArray[
 
 def _falls_are_sudden(track: Track) -> Check:
     name = "the stress builds up step by step and falls at once"
+    if np.any(np.diff(track.stroke) < 0.0):
+        return Check(name, None, "for a drive that goes one way")
     places, drops = stress_drops(track.force, 0.0)
     if len(track.force) < 100 or len(places) < 5:
         return Check(name, None, f"{len(places)} falls in {len(track.force)} increments: too few")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,13 +15,15 @@ from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, tick
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
 from sandbox.draw.text import BODY, SMALL
-from sandbox.draw.theme import mix
+from sandbox.draw.theme import HAND, mix
+from sandbox.draw.widgets_scale import shown
 from sandbox.history import Event
 
 Floats = NDArray[np.float64]
 
 LEAST_FORCE = 0.01  # the axis goes at least this far: it makes no show of rounding noise [k R]
 WIDTH, FAINT_WIDTH = 2.2, 1.3  # of curves at scale 1 [px]
+LIMIT_DASH = (2.0, 5.0)  # of the line at the strength of the hand, at scale 1 [px]
 FAINT = 0.5  # how far earlier curves recede into the panel
 
 
@@ -103,9 +106,11 @@ def draw_plot(
     curves: Sequence[Curve],
     label: str,
     stroke_label: str = "",
+    limit: float = math.inf,
 ) -> None:
     """Axes and curves. One alone has its present value in the headline; several are named at their ends.
 
+    ``limit``: the strength of the hand, where its force is what is plotted: a line across, once the axis reaches so far.
     Labels are in the present language already. The present curves come first, earlier ones after them.
     """
     if rect.height <= 0 or rect.width <= 0:
@@ -164,6 +169,8 @@ def draw_plot(
         )
         return
     inside = box.rect.inflate(round(12 * scale), round(12 * scale))
+    if limit <= axes[3]:
+        _draw_limit(painter, box, limit)
     for curve, part in reversed(list(zip(curves, parts, strict=True))):
         _draw_curve(painter, box, inside, curve, part)
     for curve, part in reversed(list(zip(curves, parts, strict=True))):
@@ -171,11 +178,27 @@ def draw_plot(
             last = float(box.x(part[0][-1])), float(box.y(part[1][-1]))
             painter.disc(*last, 6.5 * scale, theme.panel, clip=inside)
             painter.disc(*last, 4.5 * scale, curve.colour, clip=inside)
+            at = [(float(box.x(e.stroke)), float(box.y(e.force)), e.kind) for e in curve.events]
+            draw_events(painter, inside, at)
     ends = [
         (float(box.x(part[0][-1])), float(box.y(part[1][-1])), _colour(painter, curve), curve.dash)
         for curve, part in named
     ]
     draw_names(painter, box.rect, right, labels, ends)
+
+
+def _draw_limit(painter: Painter, box: PlotBox, limit: float) -> None:
+    """How strong the hand is: its colour, dashed, with its name at the left end."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    y = float(box.y(limit))
+    ends = np.array([box.rect.left, box.rect.right], dtype=np.float64)
+    dash = [length * scale for length in LIMIT_DASH]
+    painter.polyline(ends, np.full(2, y), 1.6 * scale, HAND, box.rect, dash)
+    text = words.HAND_LIMIT.format(strength=shown(limit))
+    half = type_.height(SMALL) // 2 + round(2 * scale)
+    below = y - half < box.rect.top + half
+    place = box.rect.left + round(6 * scale), y + half if below else y - half
+    painter.text(text, *place, size=SMALL, colour=theme.soft_text)
 
 
 def _draw_value(
@@ -215,9 +238,6 @@ def _draw_curve(
         painter.polyline(*later, FAINT_WIDTH * scale, faint, inside, dash)
     width = (FAINT_WIDTH if curve.faint else WIDTH) * scale
     painter.polyline(x, y, width, _colour(painter, curve), inside, dash)
-    if not curve.faint:
-        at = [(float(box.x(e.stroke)), float(box.y(e.force)), e.kind) for e in curve.events]
-        draw_events(painter, inside, at)
 
 
 def _draw_axes(

@@ -177,7 +177,8 @@ class Renderer:
         draw_plates(painter, plates)
         draw_header(painter, self.layout.header, shown, looks[0], chain_top)
         labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
-        draw_plot(painter, self.layout.plot, [*map(curve_of, shown), *kept], *labels)
+        limit = shown[0].hand_limit
+        draw_plot(painter, self.layout.plot, [*map(curve_of, shown), *kept], *labels, limit)
         painter.fill(self.layout.timeline, self.theme.panel)
         painter.fill(self.layout.panel, self.theme.panel)
         draw_status(painter, self.layout.status, shown, rate=rate, paused=paused)

@@ -23,7 +23,7 @@ from scenes.scene import HAND_STRENGTH, STRONGEST, Ingredients
 
 KEPT = "unfinished.jsonl"  # runs so far, until all are there
 SEEDS, QUICK_SEEDS = 20, 2
-MACHINE_SEEDS = 5  # of the scenes whose drive only says what force it needs
+MACHINE_SEEDS = 3  # of the scenes whose drive only says what force it needs
 RANDOM, QUICK_RANDOM = 1000, 40  # random hands in all
 STRENGTHS = {"hopper": (2.0, 4.0, 6.0, 8.0), "intruder": (0.3, 0.6, 0.9, 1.2)}  # [k R]
 
