@@ -9,13 +9,14 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.draw import raster, words
+from sandbox.draw import raster
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, HEADING, SMALL
 from sandbox.draw.theme import AUXETIC, REGULAR, magnitude_colours, mix
 from sandbox.draw.world import Look
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
+from sandbox.words import words
 
 Floats = NDArray[np.float64]
 

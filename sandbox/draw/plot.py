@@ -9,13 +9,13 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.draw import words
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
 from sandbox.draw.text import BODY, SMALL
 from sandbox.draw.theme import mix
-from sandbox.history import Event
+from sandbox.session.history import Event
+from sandbox.words import words
 
 Floats = NDArray[np.float64]
 

@@ -11,8 +11,6 @@ import pygame
 import pygame.surfarray
 from numpy.typing import NDArray
 
-from sandbox.curves import Kept
-from sandbox.draw import words
 from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flash, draw_flash
 from sandbox.draw.layout import Layout, layout
@@ -36,7 +34,9 @@ from sandbox.draw.text import Type
 from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
 from sandbox.draw.views import VIEWS, view_named
 from sandbox.draw.world import Look, draw_bodies, draw_grains
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.kept_curves import Kept
+from sandbox.words import words
 
 LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
 MARGIN = 14.0  # round the scene at scale 1 [px]

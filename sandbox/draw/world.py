@@ -14,7 +14,7 @@ from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
 from sandbox.draw.views import KIND, View
-from sandbox.frame import BodyShape, Frame
+from sandbox.session.frame import BodyShape, Frame
 
 Floats = NDArray[np.float64]
 

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 import pygame
 
 from core.errors import InputError
-from sandbox import language
-from sandbox.commands import Change
-from sandbox.draw import words
 from sandbox.draw.views import view_after
+from sandbox.session.commands import Change
 from sandbox.window.display import save_picture
 from sandbox.window.export import export, free_stem
 from sandbox.window.keys import Action, packing_for
 from sandbox.window.menu import Choice
 from sandbox.window.picture import progress_of
+from sandbox.words import language, words
 from scenes.text import message
 
 if TYPE_CHECKING:

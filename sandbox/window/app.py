@@ -11,42 +11,42 @@ from collections.abc import Mapping, Sequence
 import pygame
 
 from core.errors import InputError
-from sandbox import autosave
-from sandbox.autosave import Leftover
-from sandbox.commands import Command
-from sandbox.draw import words
-from sandbox.draw.cards import draw_error
+from sandbox.draw.pages.cards import draw_error
+from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.render import Renderer
-from sandbox.draw.splash import draw_splash
 from sandbox.draw.warmup import Warmup
-from sandbox.scene_file import SceneFile
+from sandbox.files import autosave
+from sandbox.files.autosave import Leftover
+from sandbox.files.scene_file import SceneFile
+from sandbox.session.commands import Command
 from sandbox.window.actions import Actions
-from sandbox.window.arrows import Arrows
-from sandbox.window.begin import Beginnings
-from sandbox.window.brush import Brush
-from sandbox.window.canvas import Canvas
-from sandbox.window.curves import CurvesSection
+from sandbox.window.canvas.arrows import Arrows
+from sandbox.window.canvas.brush import Brush
+from sandbox.window.canvas.canvas import Canvas
+from sandbox.window.canvas.inspector import Inspector
 from sandbox.window.display import FRAMES, Rate, natural_scale, open_display
-from sandbox.window.files import FilesSection
+from sandbox.window.film import Recorder
 from sandbox.window.focus import Focus
-from sandbox.window.general import GeneralSection
+from sandbox.window.guide import Guide
 from sandbox.window.hand import Mouse
 from sandbox.window.help import HelpPage
-from sandbox.window.inspect import Inspector
 from sandbox.window.keys import Action, action_of
-from sandbox.window.looks import LooksSection
 from sandbox.window.menu import Menu
 from sandbox.window.notices import Notices
-from sandbox.window.panel import Panel
+from sandbox.window.pages import Beginnings
+from sandbox.window.panel.curves import CurvesSection
+from sandbox.window.panel.general import GeneralSection
+from sandbox.window.panel.looks import LooksSection
+from sandbox.window.panel.panel import Panel
+from sandbox.window.panel.parameters import ParameterSection, Settings
+from sandbox.window.panel.scene_files import FilesSection
 from sandbox.window.parts import Part
 from sandbox.window.picture import Pane, Picture, progress_of
-from sandbox.window.record import Recorder
-from sandbox.window.run import Run
-from sandbox.window.settings import ParameterSection, Settings
-from sandbox.window.solver_thread import Snapshot
+from sandbox.window.solvers.panes import Run
+from sandbox.window.solvers.solver_thread import Snapshot
 from sandbox.window.sound import Sound
 from sandbox.window.timeline import Timeline
-from sandbox.window.tour import Guide
+from sandbox.words import words
 from scenes.text import message
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]

@@ -11,7 +11,7 @@ import pygame
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.draw import words
+from sandbox.words import words
 
 FRAMES = 60  # pictures a second, at most
 SMALLEST = (480, 360)  # window [px]

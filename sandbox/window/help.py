@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sandbox.draw.help_page import HelpLayout, draw_help
+from sandbox.draw.pages.help_page import HelpLayout, draw_help
 from sandbox.draw.painter import Painter
 from sandbox.window.keys import Action
 

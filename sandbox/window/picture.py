@@ -7,14 +7,14 @@ from collections.abc import Sequence
 
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flashes
 from sandbox.draw.overlays import Hand
 from sandbox.draw.render import Renderer, kept_curve
-from sandbox.frame import Frame
-from sandbox.window.run import Run
-from sandbox.window.solver_thread import Snapshot
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.panes import Run
+from sandbox.window.solvers.solver_thread import Snapshot
+from sandbox.words import words
 
 Pane = tuple[Frame, Camera, pygame.Rect]
 

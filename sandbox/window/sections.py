@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from sandbox.draw import words
-from sandbox.draw.widgets import Control
+from sandbox.draw.widgets.controls import Control
+from sandbox.words import words
 
 if TYPE_CHECKING:
     from sandbox.window.app import App

@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.commands import Recall, Redo, Undo
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.timeline import Bar, draw_bar, draw_plate
-from sandbox.draw.widgets import (
+from sandbox.draw.widgets.controls import (
     Button,
     Choice,
     Control,
@@ -23,13 +21,15 @@ from sandbox.draw.widgets import (
     Simple,
     parts_of,
 )
-from sandbox.draw.widgets_look import Attention, draw_control, draw_ring
-from sandbox.frame import Frame
+from sandbox.draw.widgets.look import Attention, draw_control, draw_ring
+from sandbox.session.commands import Recall, Redo, Undo
+from sandbox.session.frame import Frame
 from sandbox.window.display import FRAMES
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.press import keyed, pressed
 from sandbox.window.sections import Value
+from sandbox.words import words
 
 if TYPE_CHECKING:
     from sandbox.window.app import App

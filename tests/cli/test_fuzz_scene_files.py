@@ -16,10 +16,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from sandbox import cli
-from sandbox.commands import DrawWall, Place
-from sandbox.scene_file import read_scene, write_scene
-from sandbox.session import Session
+from sandbox.cli import main as cli
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.commands import DrawWall, Place
+from sandbox.session.session import Session
 
 QUICK = 5.0  # seconds of a core: nothing was built
 ROOM = 1 << 20  # kilobytes of memory that reading may add

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.cli import parse
-from sandbox.commands import DrawWall, Erase, Place, Protocol
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.scene_file import write_scene
-from sandbox.session import Session
+from sandbox.cli.main import parse
+from sandbox.files.log_file import read_log
+from sandbox.files.scene_file import write_scene
+from sandbox.session.commands import DrawWall, Erase, Place, Protocol
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
 from tests.cli.test_commands import rows_of, sandbox, state
-from tests.sandbox.test_editing import built, do
+from tests.session.test_editing import built, do
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sandbox.commands import (
+from sandbox.files.log_file import read_log
+from sandbox.session.commands import (
     Change,
     Command,
     DrawWall,
@@ -28,11 +29,10 @@ from sandbox.commands import (
     Retype,
     Undo,
 )
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.session import Session
-from sandbox.studies.stability_scenes import small
-from sandbox.studies.stability_watch import Watch
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
+from sandbox.studies.stability.scenes import small
+from sandbox.studies.stability.watch import Watch
 from scenes import registry
 
 SCENES = registry.names()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.session import Session
+from sandbox.files.log_file import read_log
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
 
 
 def hopper(kind: str = "mixed", seed: int = 1, **settings: object) -> Session:

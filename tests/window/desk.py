@@ -9,7 +9,7 @@ from typing import Any
 import pygame
 
 from sandbox.window.app import App
-from sandbox.window.run import Run
+from sandbox.window.solvers.panes import Run
 from tests.window.fake_session import FakeSession
 
 

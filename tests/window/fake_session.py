@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from core.errors import InputError
-from sandbox.commands import (
+from sandbox.session.commands import (
     Change,
     Command,
     Grab,
@@ -19,8 +19,8 @@ from sandbox.commands import (
     Reset,
     Scalar,
 )
-from sandbox.frame import Frame
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.draw.frames import intruder_frame
 
 SLICES = 3  # to an increment

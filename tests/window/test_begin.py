@@ -10,10 +10,11 @@ from typing import Any
 import pygame
 import pytest
 
-from sandbox import autosave, language
-from sandbox.draw.menu_layout import DISCARD, START, TAKE_UP
-from sandbox.window.begin import ago
+from sandbox.draw.pages.menu_layout import DISCARD, START, TAKE_UP
+from sandbox.files import autosave
 from sandbox.window.menu import Choice
+from sandbox.window.pages import ago
+from sandbox.words import language
 from tests.window.desk import Desk
 
 

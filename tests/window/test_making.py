@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from sandbox.autosave import Autosave, find
-from sandbox.commands import Change, DrawWall, Place, Protocol, Undo
-from sandbox.frame import Frame
-from sandbox.scene_file import read_scene, write_scene
-from sandbox.window.run import Run
-from tests.sandbox.test_editing import built, do
+from sandbox.files.autosave import Autosave, find
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.commands import Change, DrawWall, Place, Protocol, Undo
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.panes import Run
+from tests.session.test_editing import built, do
 
 PATIENCE = 60.0  # [s]
 WALL = DrawWall(((20.0, 3.0), (24.0, 4.0)))

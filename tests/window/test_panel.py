@@ -7,11 +7,18 @@ from collections.abc import Iterator
 import pygame
 import pytest
 
-from sandbox import language
-from sandbox.commands import Change, Command, Protocol, Reset
-from sandbox.draw import words
-from sandbox.draw.widgets import Button, Choice, Heading, Slider, Stepper, TextField, parts_of
-from sandbox.window.edit import Edit
+from sandbox.draw.widgets.controls import (
+    Button,
+    Choice,
+    Heading,
+    Slider,
+    Stepper,
+    TextField,
+    parts_of,
+)
+from sandbox.session.commands import Change, Command, Protocol, Reset
+from sandbox.window.panel.line_edit import Edit
+from sandbox.words import language, words
 from tests.window.desk import Desk
 
 

@@ -11,7 +11,9 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.commands import (
+from sandbox.draw.timeline import Bar
+from sandbox.draw.widgets.controls import Fact, TextField
+from sandbox.session.commands import (
     Change,
     Command,
     DrawWall,
@@ -26,12 +28,10 @@ from sandbox.commands import (
     Retype,
     Undo,
 )
-from sandbox.draw import words
-from sandbox.draw.timeline import Bar
-from sandbox.draw.widgets import Fact, TextField
-from sandbox.frame import Contacts
-from sandbox.history import Event
+from sandbox.session.frame import Contacts
+from sandbox.session.history import Event
 from sandbox.window import timeline
+from sandbox.words import words
 from tests.window.desk import Desk
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import partial
 
-from sandbox.commands import Change, Grab, Move, Protocol, Recall, Undo
-from sandbox.frame import Frame
-from sandbox.session import Session
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Undo
+from sandbox.session.frame import Frame
+from sandbox.session.session import Session
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.window.fake_session import wait_until
 
 

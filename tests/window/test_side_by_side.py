@@ -14,11 +14,11 @@ import pygame
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
-from sandbox.draw import words
-from sandbox.views.side_by_side import NOT_ALL, way_back
-from sandbox.views.video import VideoWriter
-from sandbox.window import record
+from sandbox.record.video import VideoWriter
+from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
+from sandbox.window import film as record
+from sandbox.window.solvers.in_step import NOT_ALL, way_back
+from sandbox.words import words
 from tests.draw.frames import intruder_frame
 from tests.window.desk import Desk
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.window.fake_session import SLICES, FakeSession, started, wait_until
 
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import pygame
 import pytest
 
-from sandbox import tours
-from sandbox.draw import words
 from sandbox.draw.overlays import KNOB
-from sandbox.draw.tour_card import BACK, CLOSE, NEXT
-from sandbox.window.tour import Guide
+from sandbox.draw.pages.tour_card import BACK, CLOSE, NEXT
+from sandbox.window import tours
+from sandbox.window.guide import Guide
+from sandbox.words import words
 from tests.window.desk import Desk
 
 

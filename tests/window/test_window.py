@@ -12,10 +12,9 @@ import pygame
 import pytest
 
 from core.errors import InputError
-from sandbox import language
-from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
-from sandbox.draw import words
+from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
 from sandbox.window import display
+from sandbox.words import language, words
 from scenes import registry
 from tests.window.desk import Desk
 

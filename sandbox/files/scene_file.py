@@ -1,0 +1,277 @@
+"""What a person has made, as a file to keep and to share: a readable NAME.toml, and beside it NAME.npz with the grains.
+
+Both are data; nothing in them is run. What is read may come from anyone: each key, each number and the grains' checksum are
+looked at before anything is built, and what does not fit is one line of InputError.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.engine_state import EngineState
+from core.errors import InputError
+from core.files import atomic_write
+from core.friction import Friction
+from core.packing import Packing
+from core.rigid import Point
+from sandbox.files.scene_checks import (
+    Placement,
+    check_fit,
+    check_grains,
+    friction_of,
+    numbers,
+    placements_of,
+    walls_of,
+)
+from sandbox.files.toml_text import toml_text
+from sandbox.session.editing import drawn_wall, line_of, poisson_ratio
+from scenes import registry
+from scenes.parameter import Value
+from scenes.scene import Setup, Values
+
+if TYPE_CHECKING:
+    from sandbox.session.session import Session
+
+Floats = NDArray[np.float64]
+
+FORMAT = "auxetic-sandbox scene"
+VERSION = 1
+SUFFIX = ".toml"
+LARGEST_TEXT = 1 << 20  # bytes
+LARGEST_GRAINS = 1 << 26
+ABOUT = (
+    "# A scene of the auxetic sandbox: open it with `python -m sandbox play THIS_FILE`.\n"
+    "# The grains are in the file beside it; keep both together. Lengths are in radii of a large grain.\n"
+)
+_KEYS = {
+    "format": str,
+    "version": int,
+    "scene": str,
+    "packing": str,
+    "seed": int,
+    "grains": str,
+    "grains_sha256": str,
+    "settings": dict,
+    "bodies": list,
+    "walls": list,
+}
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene as it was left: what it was built from, and where its grains, bodies and drawn walls were."""
+
+    name: str  # of the file, for messages
+    scene: str
+    packing: str
+    seed: int
+    settings: dict[str, Value]
+    placements: dict[str, Placement]  # x, y [R] and angle [rad] of every body
+    walls: tuple[tuple[Point, ...], ...]  # lines of the drawn walls [R]
+    grains: Packing
+    spin: Floats | None  # (N,) [rad]; None if there was no friction
+    memory: tuple[NDArray[np.int64], Floats] | None  # of the frictional contacts
+    text: bytes  # the two files themselves, to be put into a log
+    data: bytes
+
+    def of_kind(self, kind: str) -> SceneFile:
+        """The same places with grains of another kind of packing, to be looked at side by side; nothing to be logged."""
+        if kind == self.packing:
+            return self
+        nu = np.array([poisson_ratio(self.settings, one) for one in ("regular", "auxetic")])
+        share = {"regular": 0.0, "auxetic": 1.0}.get(
+            kind, float(self.settings.get("auxetic_fraction", 0.5))
+        )
+        steps = np.floor(np.arange(len(self.grains) + 1) * share + 1e-9)
+        grains = self.grains.copy()
+        grains.poisson_ratio = nu[np.diff(steps).astype(np.int64)]
+        return replace(self, packing=kind, grains=grains, text=b"", data=b"")
+
+
+@dataclass(frozen=True)
+class Made:
+    """What there is to be written: a state between two increments, to which nobody writes any more. Any thread may have it."""
+
+    scene: str
+    packing: str
+    seed: int
+    settings: Values
+    state: EngineState
+    file: SceneFile | None = None  # what it goes on from
+    worth_keeping: bool = True  # has a person done anything?
+
+
+def write_scene(
+    path: str | os.PathLike[str],
+    what: Session | Made,
+    grains: str | None = None,
+    *,
+    lasting: bool = True,
+) -> None:
+    """Write ``path`` and the grains' file beside it, both or neither; ``grains`` is its name if not that of ``path``.
+
+    During an increment it is the state before. ``lasting``: see ``core.files``. Raises InputError for a name that does not end
+    in .toml, OSError as the system does.
+    """
+    path = Path(path)
+    if path.suffix != SUFFIX:
+        raise InputError(f"{path}: the name of a scene file must end in {SUFFIX}")
+    made = what if isinstance(what, Made) else what.made()
+    name = grains or path.with_suffix(".npz").name
+    friction, bodies = made.state.friction, made.state.bodies
+    extra: dict[str, NDArray[Any]] = {}
+    if friction is not None:
+        keys, slips = friction.memory()
+        extra = {"spin": friction.spin, "contact_keys": keys, "contact_slips": slips}
+    packed = io.BytesIO()
+    made.state.packing.write(packed, extra, compressed=lasting)
+    text = toml_text(
+        {
+            "format": FORMAT,
+            "version": VERSION,
+            "scene": made.scene,
+            "packing": made.packing,
+            "seed": made.seed,
+            "grains": name,
+            "grains_sha256": hashlib.sha256(packed.getvalue()).hexdigest(),
+            "settings": dict(made.settings),
+            "bodies": [
+                {"name": b.body.name, "x": b.position[0], "y": b.position[1], "angle": b.angle}
+                for b in bodies
+                if not b.body.drawn
+            ],
+            "walls": [{"points": line_of(b.body)} for b in bodies if b.body.drawn],
+        }
+    )
+    try:
+        written = (ABOUT + text).encode()
+    except UnicodeEncodeError:
+        raise InputError(f"{str(path)!r}: choose a name with plain letters") from None
+    # The grains come first, so that there is never a text without them.
+    with (
+        atomic_write(path, lasting=lasting) as toml,
+        atomic_write(path.with_name(name), lasting=lasting) as npz,
+    ):
+        npz.write(packed.getvalue())
+        toml.write(written)
+
+
+def read_scene(path: str | os.PathLike[str]) -> SceneFile:
+    """Read what ``write_scene`` wrote. Raises InputError for what is missing, malformed, altered, hostile or newer."""
+    path = Path(path)
+    text = _read(path, LARGEST_TEXT)
+    head = _head(str(path), text)
+    return parse_scene(str(path), text, _read(path.with_name(head["grains"]), LARGEST_GRAINS), head)
+
+
+def parse_scene(
+    name: str, text: bytes, data: bytes, head: Mapping[str, Any] | None = None
+) -> SceneFile:
+    """A scene file from the bytes of its two parts. ``head``: what ``text`` says, if that is known."""
+    head = _head(name, text) if head is None else head
+    if hashlib.sha256(data).hexdigest() != head["grains_sha256"]:
+        raise InputError(
+            f"{name}: {head['grains']} is not the file that was written with it (other checksum)"
+        )
+    try:
+        scene = registry.get(head["scene"])
+        settings = scene.settings(numbers(head["settings"]))
+        packing = scene.check_packing(head["packing"])
+        if not 0 <= head["seed"] < 2**63:
+            raise InputError("the seed must be 0 or a positive whole number below 2^63")
+        placements = placements_of(head.get("bodies", []))
+        walls = walls_of(head.get("walls", []))
+        grains = Packing.load(head["grains"], io.BytesIO(data))
+        spin, memory = friction_of(data, len(grains))
+        check_grains(grains)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    return SceneFile(
+        name,
+        scene.name,
+        packing,
+        head["seed"],
+        settings,
+        placements,
+        walls,
+        grains,
+        spin,
+        memory,
+        text,
+        data,
+    )
+
+
+def put_into(setup: Setup, file: SceneFile) -> None:
+    """Make a scene that was just built the one of the file. Raises InputError if its parts do not go together."""
+    walls = [drawn_wall(k, line) for k, line in enumerate(file.walls, 1)]
+    try:
+        check_fit(setup, file.grains, file.placements, walls)
+    except InputError as error:
+        raise InputError(f"{file.name}: {error}") from None
+    setup.packing = file.grains.copy()
+    for body in setup.world.bodies:
+        if body.name in file.placements:
+            x, y, angle = file.placements[body.name]
+            body.position, body.angle = (x, y), angle
+    setup.world.redraw(walls)
+    if setup.friction > 0.0:
+        setup.friction_state = Friction(setup.friction, len(file.grains))
+        if file.spin is not None and file.memory is not None:
+            setup.friction_state.remember(file.spin, *file.memory)
+
+
+def _read(path: Path, most: int) -> bytes:
+    """A whole file that is not larger than ``most`` bytes. Raises InputError."""
+    try:
+        if not path.is_file():
+            kind = "this is no file" if path.exists() else "no such file"
+            raise InputError(f"{path}: {kind}")
+        with path.open("rb") as file:
+            content = file.read(most + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{str(path)!r}: cannot be read ({error})") from None
+    if len(content) > most:
+        raise InputError(f"{path}: larger than any file of this kind; not opened")
+    return content
+
+
+def _head(name: str, text: bytes) -> dict[str, Any]:
+    """What the text says, its keys and types checked."""
+    try:
+        head = tomllib.loads(text.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        raise InputError(f"{name}: not a readable scene file ({reason})") from None
+    if head.get("format") != FORMAT:
+        raise InputError(f"{name}: not a scene file of this program (no format = {FORMAT!r})")
+    version = head.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise InputError(
+            f"{name}: version {version!r} of the format, this program reads {VERSION}; update the program"
+        )
+    for key in head:
+        if key not in _KEYS:
+            raise InputError(f"{name}: unknown key {key!r}")
+    for key, kind in _KEYS.items():
+        if key in ("bodies", "walls") and key not in head:
+            continue
+        if not isinstance(head.get(key), kind) or isinstance(head[key], bool):
+            raise InputError(f"{name}: {key} is missing, or not what it should be")
+    grains = head["grains"]
+    plain = grains == Path(grains).name and not set(grains) & set('/\\:*?"<>|\0')
+    if not plain or not grains.endswith(".npz") or len(grains) > 255:
+        raise InputError(f"{name}: grains must be the plain name of an .npz file beside this one")
+    return head

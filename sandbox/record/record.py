@@ -1,0 +1,176 @@
+"""Runs a session without a window, increment by increment, and writes down what it sees."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sandbox.files.table import Table, write_csv
+from sandbox.interrupts import deferred
+from sandbox.record.video import VideoWriter
+
+if TYPE_CHECKING:
+    from sandbox.files.log_file import Log
+    from sandbox.session.frame import Frame
+    from sandbox.session.session import Session
+
+# Relaxation steps between two looks at the clock and at Ctrl-C: a fraction of a second.
+SLICE = 400
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a run is written to; at least one of the two."""
+
+    film: Path | None
+    table: Path | None
+    size: tuple[int, int] = (1280, 720)
+    fps: float = 30.0
+    view: str = "kind"
+    theme: str = "dark"
+    every: int = 1  # increments to a frame of the film
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run came to. The table has a row more than there are increments: that of the start."""
+
+    increments: int
+    frames: int
+    rows: int  # of all packings
+    interrupted: bool
+
+
+def record(session: Session, steps: int, output: Output) -> Outcome:
+    """Build the session, run its scripted protocol for ``steps`` increments, write the output.
+
+    One frame an increment. Ctrl-C, or the end of the protocol, ends the run early; everything done
+    until then is written.
+    """
+    from sandbox.session.commands import Protocol
+
+    with build_bar() as progress:
+        session.build(progress)
+    session.submit(Protocol(True))
+    return run([session], slices(session), steps, output)
+
+
+def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
+    """Run a log again, one frame an increment; the session at its end, and what it came to."""
+    from sandbox.session.replay import replay
+
+    with build_bar() as progress:
+        states = replay(log, progress)
+        session = next(states)
+    outcome = run([session], (True for _ in states), log.end, output)
+    if not outcome.interrupted:
+        next(states, None)  # commands that came after the last increment
+    return session, outcome
+
+
+def slices(session: Session) -> Iterator[bool]:
+    """Work slice by slice until there is nothing to do; True where an increment was finished."""
+    while True:
+        finished = session.advance(SLICE)
+        if not finished and session.idle:
+            return
+        yield finished
+
+
+def run(
+    sessions: Sequence[Session], work: Iterator[bool], steps: int, output: Output | None
+) -> Outcome:
+    """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
+
+    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th,
+    the table at the end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    """
+    from tqdm import tqdm
+
+    film, table = (output.film, output.table) if output else (None, None)
+    draw = _drawer(output) if output and film else None
+    writer = VideoWriter(film, output.size, output.fps) if output and film else None
+    increments = 0
+    interrupted = False
+    try:
+        with (
+            writer or nullcontext(),
+            tqdm(
+                total=steps, desc=sessions[0].scene.name, unit="increment", **_bar_options()
+            ) as bar,
+        ):
+            while increments < steps:
+                with deferred():
+                    finished = next(work, None)
+                    if finished is None:
+                        break
+                    if finished:
+                        increments += 1
+                        if writer and draw and output and increments % output.every == 0:
+                            writer.write(draw([session.frame() for session in sessions]))
+                        bar.update()
+    except KeyboardInterrupt:
+        interrupted = True
+    if table and increments:
+        write_csv(table, _table(sessions))
+    rows = sum(len(session.history) for session in sessions)
+    return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
+
+
+def _table(sessions: Sequence[Session]) -> Table:
+    from sandbox.record.record_side_by_side import SideBySide
+
+    return sessions[0].history if len(sessions) == 1 else SideBySide(sessions)
+
+
+@contextmanager
+def build_bar() -> Iterator[Callable[[str, float], None]]:
+    """A progress bar to pass to ``Session.build``."""
+    from tqdm import tqdm
+
+    with tqdm(
+        total=1.0, bar_format="{desc:<42.42} {percentage:3.0f}%|{bar}| {elapsed}", **_bar_options()
+    ) as bar:
+
+        def progress(text: str, fraction: float) -> None:
+            bar.set_description_str(text, refresh=False)
+            bar.update(max(0.0, min(fraction, 1.0) - bar.n))
+
+        yield progress
+        bar.update(max(0.0, 1.0 - bar.n))
+
+
+def _drawer(output: Output) -> Callable[[Sequence[Frame]], Any]:
+    """What makes a picture of one frame or several: the next of the film."""
+    from sandbox.environment import prepare_headless
+
+    prepare_headless()
+    from sandbox.draw.flashes import Flashes
+    from sandbox.draw.render import Renderer
+
+    # Letters and lines keep their share of the picture whatever its size.
+    scale = max(0.5, min(output.size[0] / 1280, output.size[1] / 720))
+    renderer = Renderer(output.size, scale, output.theme, output.view)
+    flashes, numbers = Flashes(), count()
+
+    def draw(frames: Sequence[Frame]) -> Any:
+        lit = flashes.follow(frames, next(numbers) / output.fps)  # the film's time, not the clock's
+        return renderer.image(frames, flashes=lit)
+
+    return draw
+
+
+def _bar_options() -> dict[str, Any]:
+    """A line every ten seconds is enough where nobody watches the bar move."""
+    watched = sys.stderr.isatty()
+    return {
+        "file": sys.stderr,
+        "dynamic_ncols": watched,
+        "ncols": None if watched else 100,
+        "mininterval": 0.1 if watched else 10.0,
+    }

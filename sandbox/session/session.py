@@ -1,0 +1,349 @@
+"""THE loop: commands in → bodies move → grains relax → a row of history and a frame. Window, films and tests all run this one."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import get_args
+
+from core.engine_state import keep_bodies, place_bodies
+from core.errors import InputError
+from core.warmup import compile_kernels
+from sandbox.files.log_file import Log
+from sandbox.files.log_file import write_log as write_log_file
+from sandbox.files.scene_file import Made, SceneFile, put_into, read_scene
+from sandbox.session.commands import (
+    Change,
+    Command,
+    DrawWall,
+    Edit,
+    Erase,
+    EraseWall,
+    Grab,
+    Move,
+    Place,
+    Protocol,
+    Recall,
+    Redo,
+    Release,
+    Reset,
+    Retype,
+    Undo,
+    check,
+)
+from sandbox.session.frame import Frame
+from sandbox.session.history import History
+from sandbox.session.run import Run
+from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
+from scenes import registry
+from scenes.parameter import shown
+from scenes.scene import Check, Ingredients, Scene, Setup, Values
+from scenes.text import message
+
+COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
+COMPILE_SHARE = 0.5
+UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
+JOURNEYS = (Reset, Recall, Undo, Redo)
+
+Progress = Callable[[str, float], None]
+
+
+class Session:
+    """A scene, the commands given to it, and its run. Everything but ``submit`` belongs to one thread, the solver's."""
+
+    def __init__(
+        self,
+        scene: str,
+        packing: str = "mixed",
+        seed: int = 1,
+        settings: Mapping[str, object] | None = None,
+    ) -> None:
+        """Checks the request and is quick. Raises InputError."""
+        self.scene: Scene = registry.get(scene)
+        self.packing = self.scene.check_packing(packing)
+        self.seed = check_seed(seed)
+        self.settings: Values = self.scene.settings(settings)
+        self._file: SceneFile | None = (
+            None  # what the scene is built from, if not from its settings
+        )
+        self._first = (scene, self.packing, self.seed, dict(self.settings))
+        self._first_file: SceneFile | None = None
+        self._pending: deque[Command] = deque()
+        self._lock = threading.Lock()
+        self._commands: list[tuple[int, Command]] = []
+        self._finished = 0
+        self._refusals = 0, ""  # how many commands could not be carried out, and why the latest
+        self._run: Run | None = None
+        self._start: Start | None = None
+        self._past = Past()
+        self._progress: Progress | None = None
+
+    @classmethod
+    def from_file(cls, file: str | os.PathLike[str] | SceneFile) -> Session:
+        """A session that begins where a scene file was written. Raises InputError for one that cannot be read."""
+        kept = file if isinstance(file, SceneFile) else read_scene(file)
+        session = cls(kept.scene, kept.packing, kept.seed, kept.settings)
+        session._file = session._first_file = kept
+        return session
+
+    def build(self, progress: Progress | None = None) -> None:
+        """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
+        self._progress = progress
+        report = progress or _silent
+        self._compile(self.scene.ingredients(self.settings))
+        report(PACKING, COMPILE_SHARE)
+        setup = self.scene.build(
+            self.settings,
+            self.packing,
+            self.seed,
+            lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
+        )
+        if self._file is not None:
+            put_into(setup, self._file)
+        bodies = keep_bodies(setup.world)
+        start = Start(setup.packing.copy(), setup, bodies, self.settings, self._file)
+        self._start, self._run = start, self._first_run(setup)
+        report("ready", 1.0)
+
+    def _first_run(self, setup: Setup) -> Run:
+        """The run of what was just built. Raises InputError where a file has brought what cannot be run."""
+        if self._file is None:
+            return Run(self.scene, self.settings, self.packing, self.seed, setup)
+        try:
+            run = Run(self.scene, self.settings, self.packing, self.seed, setup)
+        except InputError as error:
+            raise InputError(f"{self._file.name}: {error}") from None
+        if run.failed:
+            raise InputError(f"{self._file.name}: its grains cannot be relaxed")
+        return run
+
+    def _compile(self, terms: Ingredients) -> None:
+        report = self._progress or _silent
+        report(COMPILING, 0.0)
+        compile_kernels(
+            periodic=terms.periodic,
+            rigid=terms.rigid,
+            friction=terms.friction,
+            gravity=terms.gravity,
+            progress=lambda share: report(COMPILING, COMPILE_SHARE * share),
+        )
+
+    # Commands.
+
+    def submit(self, command: Command) -> None:
+        """Ask for something; it takes effect before the next increment. May be called from any thread."""
+        with self._lock:
+            self._pending.append(command)
+
+    def settle(self) -> bool:
+        """Let waiting commands take effect, unless an increment is under way. True if they led to another time."""
+        travelled = False
+        while not self.busy:
+            with self._lock:
+                if not self._pending:
+                    break
+                command = self._pending.popleft()
+            try:
+                self._apply(command)
+            except InputError as error:
+                self.run.say(message(error))
+                self._refusals = self._refusals[0] + 1, message(error)
+                continue
+            travelled |= isinstance(command, JOURNEYS)
+            self._commands.append((self._finished, command))
+        return travelled
+
+    def _apply(self, command: Command) -> None:
+        check(command)
+        before = self._moment() if isinstance(command, UNDOABLE) else None
+        self._do(command)
+        if before is not None:
+            if before.run is not self.run:
+                before.run.checkpoints.squeeze(OLD_RUN_BYTES)
+            self._past.remember(before, command, self._finished)
+
+    def _do(self, command: Command) -> None:
+        match command:
+            case Grab(handle):
+                self.run.grab(handle)
+            case Move(handle, x, y):
+                self.run.move(handle, (x, y))
+            case Release(handle):
+                self.run.release(handle)
+            case Protocol(on):
+                self.run.follow_script(on)
+            case Reset():
+                self._reset()
+            case Place() | Erase() | Retype() | DrawWall() | EraseWall():
+                self.run.edit(command)
+            case Change(name, value) if self.rebuilds(command):
+                self._rebuild(name, value)
+            case Change(name, value):
+                self._adjust(name, value)
+            case Recall(increment):
+                self.run.recall(increment)
+                self.settings = self.run.values
+            case Undo():
+                self._go_to(self._past.undo(self._moment()))
+            case Redo():
+                self._go_to(self._past.redo(self._moment()))
+
+    def _reset(self) -> None:
+        """The start, with the settings as they are now."""
+        start = self._start
+        assert start is not None
+        start.setup.packing = start.packing.copy()
+        place_bodies(start.setup.world, start.bodies)
+        changed = {name for name, value in self.settings.items() if value != start.values[name]}
+        self.scene.adjust(start.setup, self.settings, frozenset(changed))
+        self._run = Run(self.scene, self.settings, self.packing, self.seed, start.setup)
+
+    def _moment(self) -> Moment:
+        """Where the session stands."""
+        assert self._start is not None
+        checkpoint = self.run.present()
+        return Moment(self.scene, self.packing, self.seed, self._start, self.run, checkpoint)
+
+    def _go_to(self, moment: Moment) -> None:
+        """Be as at that moment, with nothing held and the script off."""
+        if moment.run is not self.run:
+            self.run.checkpoints.squeeze(OLD_RUN_BYTES)
+        self.scene, self.packing, self.seed = moment.scene, moment.packing, moment.seed
+        self._start, self._run = moment.start, moment.run
+        self._file = moment.start.file
+        self._run.restore(moment.checkpoint)
+        self._run.still()
+        self.settings = self._run.values
+
+    def rebuilds(self, command: Command) -> bool:
+        """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
+        if not isinstance(command, Change):
+            return False
+        return not any(p.live and p.name == command.name for p in self.scene.parameters)
+
+    def _adjust(self, name: str, value: object) -> None:
+        """A live parameter acts on the grains where they stand."""
+        settings = self.scene.settings({**self.settings, name: value})
+        if settings[name] == self.settings[name]:
+            return
+        terms = self.scene.ingredients(settings)
+        if terms != self.scene.ingredients(self.settings):
+            self._compile(terms)
+        self.run.adjust(settings, frozenset({name}))
+        self.settings = settings
+
+    def _rebuild(self, name: str, value: object) -> None:
+        scene, packing, seed, settings = self.scene, self.packing, self.seed, dict(self.settings)
+        if name == "scene":
+            scene = registry.get(str(value))
+            settings = scene.settings()
+            packing = packing if packing in scene.packings else scene.packings[0]
+        elif name == "packing":
+            packing = scene.check_packing(str(value))
+        elif name == "seed":
+            seed = check_seed(value)
+        else:
+            settings = scene.settings({**settings, name: value})
+        before = self.scene, self.packing, self.seed, self.settings, self._file
+        self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
+        self._file = None
+        try:
+            self.build(self._progress)
+        except InputError:
+            self.scene, self.packing, self.seed, self.settings, self._file = before
+            raise
+
+    # Running.
+
+    @property
+    def run(self) -> Run:
+        """The run under way. Raises RuntimeError before ``build``."""
+        if self._run is None:
+            raise RuntimeError("build the session first")
+        return self._run
+
+    @property
+    def busy(self) -> bool:
+        """True while an increment is being relaxed."""
+        return self._run is not None and self._run.engine.busy
+
+    @property
+    def idle(self) -> bool:
+        """True if there is nothing to do: no command waits, no body has to move, and nothing is being relaxed."""
+        return self._run is None or (not self._pending and self._run.idle)
+
+    @property
+    def finished(self) -> int:
+        """Increments finished since the session began, resets included: the stamp of a log."""
+        return self._finished
+
+    def advance(self, max_iterations: int = 200) -> bool:
+        """One slice of work, at most so many force evaluations. True if it finished an increment. Commands enter in between.
+
+        Where they lead to another time, nothing moves yet: it can be looked at first, and its future is not lost.
+        """
+        if self.settle() or not self.run.advance(max_iterations):
+            return False
+        self._finished += 1
+        return True
+
+    # What can be seen.
+
+    @property
+    def history(self) -> History:
+        """One row an increment since the last reset."""
+        return self.run.history
+
+    def frame(self) -> Frame:
+        """A snapshot that shares nothing with the session."""
+        now = self.run.kept
+        frame = self.run.frame(self._past.can_undo(now), self._past.can_redo)
+        return replace(frame, refusals=self._refusals[0], refusal=self._refusals[1])
+
+    def state_hash(self) -> str:
+        """Hash of every bit of the state."""
+        return self.run.state_hash()
+
+    @property
+    def file(self) -> SceneFile | None:
+        """What the scene was read from, if it was."""
+        return self._file
+
+    def made(self) -> Made:
+        """What there is to be kept in a file; quick, as it shares the checkpoint that is kept anyway."""
+        kept = self.run.settled
+        worth = bool(self._commands) or self._file is not None
+        scene, file = self.scene.name, self._file
+        return Made(scene, self.packing, self.seed, kept.values, kept.engine, file, worth)
+
+    def checks(self) -> list[Check]:
+        """The scene's claims about this run."""
+        return self.run.checks()
+
+    def log(self) -> Log:
+        """All since the session began. Raises RuntimeError in the middle of an increment: finish it first."""
+        if self.busy:
+            raise RuntimeError("finish the increment before taking the log")
+        commands, end, digest = tuple(self._commands), self._finished, self.state_hash()
+        return Log(*self._first, commands, end, digest, self._first_file)
+
+    def write_log(self, path: str) -> None:
+        """Write the log whole or not at all."""
+        write_log_file(path, self.log())
+
+
+def _silent(text: str, share: float) -> None:
+    """Progress that nobody watches."""
+    del text, share
+
+
+def check_seed(seed: object) -> int:
+    """A seed is a whole number from 0 to 2⁶³ − 1. Raises InputError otherwise."""
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**63:
+        raise InputError(
+            f"the seed must be 0 or a positive whole number below 2^63, not {shown(seed)}"
+        )
+    return seed
