@@ -10,12 +10,11 @@ import math
 import os
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
-from difflib import get_close_matches
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-from core.errors import InputError
+from core.errors import InputError, did_you_mean
 
 SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
@@ -59,17 +58,6 @@ class Parser(argparse.ArgumentParser):
                 )
         if words:
             raise InputError(f"unexpected argument {words[0]!r}; see {self.prog} --help")
-
-
-def nearest(word: str, choices: Iterable[str]) -> str | None:
-    """The choice that ``word`` was probably meant to be, or None."""
-    return next(iter(get_close_matches(word.lower(), list(choices), n=1, cutoff=0.5)), None)
-
-
-def did_you_mean(word: str, choices: Iterable[str]) -> str:
-    """`` (did you mean X?)`` for the choice nearest to ``word``, or nothing."""
-    near = nearest(word, choices)
-    return f" (did you mean {near}?)" if near else ""
 
 
 def any_of(choices: Sequence[str]) -> str:

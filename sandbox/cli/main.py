@@ -12,7 +12,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 
-from core.errors import InputError
+from core.errors import InputError, nearest
 from sandbox import __version__
 from sandbox.cli import arguments, verbs
 from sandbox.cli import study as studies
@@ -257,7 +257,7 @@ def _meant_command(word: str, commands: dict[str, Parser]) -> str:
     from scenes import registry
 
     scenes = registry.names()
-    meant = arguments.nearest(word, [*commands, *scenes])
+    meant = nearest(word, [*commands, *scenes])
     if meant in scenes:
         return f" (did you mean play {meant}?)"
     return f" (did you mean {meant}?)" if meant else f": use {', '.join(commands)}"

@@ -18,11 +18,12 @@ Study = Callable[[argparse.Namespace], int]
 def paper(options: argparse.Namespace) -> int:
     """Judge the claims of the paper."""
     from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
     from sandbox.studies.paper import study
 
     study.choose(options.only)
-    study.require_matplotlib()
-    folder = study.prepare_folder(options.out)
+    require_matplotlib()
+    folder = prepare_folder(options.out)
     with stop_like_ctrl_c():
         outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
     if outcome.interrupted:
@@ -38,7 +39,7 @@ def accuracy(options: argparse.Namespace) -> int:
     """Measure error against run time."""
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.accuracy import study
-    from sandbox.studies.paper.study import prepare_folder, require_matplotlib
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
 
     study.choose(options.scene)
     require_matplotlib()
@@ -59,7 +60,7 @@ def stability(options: argparse.Namespace) -> int:
     from collections import Counter
 
     from sandbox.interrupts import stop_like_ctrl_c
-    from sandbox.studies.paper.study import prepare_folder, require_matplotlib
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
     from sandbox.studies.stability import study
     from sandbox.studies.stability.case import FAILS
 

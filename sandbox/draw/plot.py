@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pygame
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
@@ -16,8 +16,6 @@ from sandbox.draw.text import BODY, SMALL
 from sandbox.draw.theme import mix
 from sandbox.session.history import Event
 from sandbox.words import words
-
-Floats = NDArray[np.float64]
 
 LEAST_FORCE = 0.01  # the axis goes at least this far: it makes no show of rounding noise [k R]
 WIDTH, FAINT_WIDTH = 2.2, 1.3  # of curves at scale 1 [px]

@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, floats
@@ -15,8 +16,6 @@ from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
 from sandbox.draw.views import KIND, View
 from sandbox.session.frame import BodyShape, Frame
-
-Floats = NDArray[np.float64]
 
 OUTLINE = 1.5  # width on screen at scale 1 [px]
 FADED = 0.35  # how far grains recede into the ground when force chains are shown

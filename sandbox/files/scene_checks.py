@@ -11,6 +11,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InputError
 from core.friction import Friction
 from core.generate import inside
@@ -19,7 +20,6 @@ from core.rigid import Point, RigidBody
 from sandbox.session.editing import FARTHEST, MOST_GRAINS, MOST_PIECES, MOST_WALLS
 from scenes.scene import Setup
 
-Floats = NDArray[np.float64]
 Placement = tuple[float, float, float]
 
 MOST_BODIES = 200

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.engine_state import EngineState
 from core.errors import InputError
 from core.files import atomic_write
@@ -42,7 +43,6 @@ from scenes.scene import Setup, Values
 if TYPE_CHECKING:
     from sandbox.session.session import Session
 
-Floats = NDArray[np.float64]
 
 FORMAT = "auxetic-sandbox scene"
 VERSION = 1

@@ -24,8 +24,6 @@ from sandbox.session.commands import DrawWall, Edit, Erase, EraseWall, Place, Re
 from scenes.scene import Setup, Values
 from scenes.text import Text
 
-Floats = NDArray[np.float64]
-
 MOST_GRAINS = 100_000
 FARTHEST = 1e6  # [R] no scene has places further off
 MOST_WALLS = 100

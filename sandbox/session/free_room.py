@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.generate import inside
 from core.packing import Packing, PeriodicBox
 from core.rigid import Point
 from core.rigid_contacts import EDGE
 from scenes.scene import Setup
-
-Floats = NDArray[np.float64]
 
 NEAR = 4.0  # of the largest grain's reach: what is further away takes no room
 

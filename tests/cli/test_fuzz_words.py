@@ -129,7 +129,7 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     from sandbox.record import record, record_side_by_side
     from sandbox.studies.accuracy import study as accuracy
     from sandbox.studies.bench import bench
-    from sandbox.studies.paper import study as paper
+    from sandbox.studies.common import folder as studies_folder
     from sandbox.studies.stability import study as stability
     from sandbox.window import app
 
@@ -146,7 +146,7 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
             (record, "repeat"),
             (record_side_by_side, "record_side_by_side"),
             (bench, "run"),
-            (paper, "prepare_folder"),
+            (studies_folder, "prepare_folder"),
             (stability, "study"),
             (accuracy, "study"),
         ):

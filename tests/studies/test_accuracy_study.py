@@ -31,7 +31,7 @@ from sandbox.studies.accuracy.summary import (
     summarise,
 )
 from sandbox.studies.accuracy.walk import Knobs, begin, walk
-from sandbox.studies.paper.study import machine
+from sandbox.studies.common.folder import machine
 from scenes import registry
 
 COMMAND = [sys.executable, "-m", "sandbox", "study", "accuracy"]

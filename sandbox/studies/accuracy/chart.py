@@ -13,15 +13,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core import fire, sweeps
 from core.jit import kernel
 from core.problem import Problem
 from core.relaxation import Relaxation
 from core.steering import steer
-
-Floats = NDArray[np.float64]
 
 TURN_MASS = 0.01
 MOST_EVALUATIONS = 60_000

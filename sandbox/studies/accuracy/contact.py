@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.exact import contact_distance
 from core.jit import kernel
 from sandbox.studies.accuracy.exact import quadratic, tilt
 from sandbox.studies.common.clock import clock
 from scenes.scene import Scene
-
-Floats = NDArray[np.float64]
 
 HALVINGS = (
     0,

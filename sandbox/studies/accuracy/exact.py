@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.jit import kernel
 from core.observables import GrainContacts, RigidContacts, body_contacts, grain_contacts
 from core.packing import Packing
@@ -26,7 +27,6 @@ from core.rigid_contacts import DISC
 from sandbox.studies.accuracy.peers import minimize
 from sandbox.studies.accuracy.walk import Look, Walker
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 BISECTIONS = 50

@@ -10,9 +10,9 @@ from statistics import median
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core import reference
+from core.arrays import Floats
 from core.observables import force_drops
 from sandbox import __version__
 from sandbox.studies.accuracy.chart import paper_chart
@@ -24,7 +24,6 @@ from sandbox.studies.accuracy.protocols import FULL, QUICK, Protocol, Sweeps, pr
 from sandbox.studies.accuracy.walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
 from scenes import registry
 
-Floats = NDArray[np.float64]
 Stopping = Callable[[], bool]
 
 DATA_VERSION = 2  # raise it when a job measures something else

@@ -7,12 +7,10 @@ and the way to measure it. Written for ``Knobs.solve``: they leave their answer 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.problem import Problem
 from core.relaxation import Relaxation
-
-Floats = NDArray[np.float64]
 
 MEMORY = 10  # pairs that L-BFGS-B remembers: 5 to 40 were tried, and make no difference
 MOST_EVALUATIONS = 60_000

@@ -21,9 +21,8 @@ from sandbox.studies.accuracy.job import Job
 from sandbox.studies.accuracy.protocols import APART, PROTOCOLS, protocol
 from sandbox.studies.accuracy.report import as_markdown, as_table, statement
 from sandbox.studies.accuracy.summary import summarise
+from sandbox.studies.common.folder import finite, machine, write_text
 from sandbox.studies.common.pool import Pool, stopping
-from sandbox.studies.paper.report import finite, write_text
-from sandbox.studies.paper.study import machine
 from scenes import registry
 
 FORMAT = "auxetic-sandbox accuracy"

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.friction import Friction
 from core.material import area_modulus, shape_modulus
 from core.packing import Packing, PeriodicBox
@@ -25,7 +26,6 @@ from scenes import registry
 from scenes.parameter import Value
 from scenes.scene import Scene, Setup
 
-Floats = NDArray[np.float64]
 Solve = Callable[[Relaxation, float], int]  # relaxes to a tolerance by other means; its evaluations
 
 TIGHT = 1e-10  # relative residual of the start and of the reference

@@ -6,13 +6,12 @@ import math
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
 from core import neighbors
+from core.arrays import Floats
 from core.packing import PeriodicBox
 from sandbox.studies.bench.soft_discs import SoftDiscs
 
-Floats = NDArray[np.float64]
 SKIN = 0.5  # [R]
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import contacts, elasticity, fire, sweeps
+from core.arrays import Floats
 from core.generate import Recipe, pack
 from core.jit import kernel
 from core.relaxation import Relaxation
@@ -23,8 +24,6 @@ CASES = {"without a box": False, "periodic box": True}
 RATIO = 0.45  # production over plain, time per listed pair
 BEST_KNOWN = 7.7  # [ns] a pair, the fastest layout in pure Numba found before this program …
 BEST_KNOWN_PLAIN = 20.7  # [ns] … where a plain kernel took this
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

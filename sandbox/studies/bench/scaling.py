@@ -11,9 +11,10 @@ import numpy as np
 
 from core.generate import Recipe, pack
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from sandbox.studies.bench.report import Row, Section, at_most
 from sandbox.studies.common.clock import clock, exponent
 

@@ -16,14 +16,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core import fire, neighbors
+from core.arrays import Floats
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import PeriodicBox
-
-Floats = NDArray[np.float64]
 
 SIZE_RATIO, PACKING_FRACTION = 1.4, 0.90
 TOLERANCE = 1e-8  # [k R], on every component of every force

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from core.arrays import Floats
 from sandbox.studies.paper.runs import Request, Result
-
-Floats: TypeAlias = NDArray[np.float64]
 
 SURE = 2.0  # standard errors that a difference must exceed to be counted as one
 

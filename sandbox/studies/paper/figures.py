@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
+from sandbox.studies.common.folder import write_bytes
+from sandbox.studies.common.style import RESOLUTION, STYLE, plain_numbers
 from sandbox.studies.paper.claims import Figure, Line, Panel
-from sandbox.studies.paper.report import write_bytes
 from sandbox.studies.paper.runs import Result
 
 COLOURS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED, "other": 0x555555}
@@ -17,20 +18,6 @@ COLOURS = {"regular": REGULAR, "auxetic": AUXETIC, "mixed": MIXED, "other": 0x55
 MARKS = {"regular": "o", "auxetic": "s", "mixed": "D", "other": "^"}
 PANEL = (4.8, 3.7)  # of one pair of axes [inch]
 MOST_ACROSS = 2
-RESOLUTION = 150  # [dots an inch]
-STYLE: Any = {
-    "font.size": 11.0,
-    "axes.titlesize": 11.0,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.6,
-    "legend.frameon": False,
-    "legend.fontsize": 9.0,
-    "lines.linewidth": 1.6,
-    "lines.markersize": 5.0,
-}
 
 
 def draw(figure: Figure, results: Sequence[Result], path: Path) -> None:
@@ -68,16 +55,6 @@ def _draw_panel(axes: Any, panel: Panel) -> None:
         plain_numbers(axes.yaxis, *axes.get_ylim())
     if any(line.label for line in panel.lines):
         axes.legend()
-
-
-def plain_numbers(axis: Any, low: float, high: float) -> None:
-    """Numbers along a logarithmic axis: powers of ten, over a short range 2 and 5 times these as well."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axis.set_minor_formatter(NullFormatter())
-    if high < 200.0 * low:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _draw_line(axes: Any, line: Line) -> None:

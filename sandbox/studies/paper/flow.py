@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from core.arrays import Floats
 from core.observables import force_drops
 from sandbox.studies.paper.claims import (
     SURE,
     Claim,
     Figure,
     Finding,
-    Floats,
     Line,
     Measured,
     Panel,

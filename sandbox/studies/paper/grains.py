@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.arrays import Floats
 from core.material import from_paper
 from sandbox.studies.paper.claims import (
     Claim,
     Figure,
     Finding,
-    Floats,
     Line,
     Measured,
     Panel,

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
-from core.files import atomic_write
+from sandbox.studies.common.folder import finite
 from sandbox.studies.paper.claims import Claim, Finding
 from sandbox.studies.paper.runs import Result
 
@@ -128,29 +125,3 @@ def as_json(judged: Sequence[Judged], results: Sequence[Result], about: Mapping[
         ],
     }
     return json.dumps(finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def finite(value: Any) -> Any:
-    """Numbers that JSON cannot carry become null."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {key: finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [finite(item) for item in value]
-    return value
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all. Raises InputError if it cannot be written."""
-    write_bytes(path, text.encode())
-
-
-def write_bytes(path: Path, content: bytes) -> None:
-    """As ``write_text``, of anything."""
-    try:
-        with atomic_write(path) as file:
-            file.write(content)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"cannot write {path}: {reason}") from error

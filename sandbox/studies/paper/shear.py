@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from core.arrays import Floats
 from core.shear import dilatancy, shear_modulus, yield_stress
 from sandbox.studies.paper.bulk import colour, kinds, label, of_ratio, ratios
 from sandbox.studies.paper.claims import (
@@ -13,7 +14,6 @@ from sandbox.studies.paper.claims import (
     Claim,
     Figure,
     Finding,
-    Floats,
     Line,
     Measured,
     Panel,

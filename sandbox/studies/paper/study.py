@@ -5,26 +5,20 @@ Haver, Acuña et al., "Elasticity and rheology of auxetic granular metamaterials
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import platform
 import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
-from core.errors import InputError
-from sandbox import __version__
-from sandbox.cli.arguments import did_you_mean
+from core.errors import InputError, did_you_mean
+from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.paper import bulk as paper_bulk
 from sandbox.studies.paper import flow as paper_flow
 from sandbox.studies.paper import grains as paper_grains
 from sandbox.studies.paper import shear as paper_shear
 from sandbox.studies.paper.claims import Claim, Finding
-from sandbox.studies.paper.report import Judged, as_json, as_markdown, write_text
+from sandbox.studies.paper.report import Judged, as_json, as_markdown
 from sandbox.studies.paper.runs import Request, Result, Store, run_all
 
 CLAIMS: tuple[Claim, ...] = (
@@ -33,7 +27,6 @@ CLAIMS: tuple[Claim, ...] = (
     *paper_shear.CLAIMS,
     *paper_flow.CLAIMS,
 )
-LIBRARIES = ("numpy", "numba", "pymunk", "matplotlib")
 
 
 @dataclass(frozen=True)
@@ -54,29 +47,6 @@ def choose(names: Sequence[str] | None, claims: Sequence[Claim] = CLAIMS) -> lis
             hint = did_you_mean(name, known) or f": there are {', '.join(known)}"
             raise InputError(f"--only {name}: no such claim{hint}")
     return [claim for claim in claims if not names or claim.name in names]
-
-
-def require_matplotlib() -> None:
-    """Raise InputError, before any work is done, if figures cannot be drawn."""
-    if importlib.util.find_spec("matplotlib") is None:
-        raise InputError(
-            "figures need matplotlib, which is not installed: "
-            "run: python -m pip install 'auxetic-sandbox[study]'"
-        )
-
-
-def prepare_folder(text: str, inside: str = "runs") -> Path:
-    """The folder for the output, made if need be, with one ``inside`` it. Raises InputError if it cannot be written to."""
-    folder = Path(text)
-    try:
-        (folder / inside).mkdir(parents=True, exist_ok=True)
-        trial = folder / inside / f".trial-{os.getpid()}"
-        trial.write_bytes(b"")
-        trial.unlink()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"--out {text}: cannot write there ({reason})") from error
-    return folder
 
 
 def study(
@@ -176,25 +146,6 @@ def _draw(
 
 def _failures(results: dict[Request, Result]) -> int:
     return sum(result.failure is not None for result in results.values())
-
-
-def machine() -> dict[str, Any]:
-    """What the study ran on."""
-    versions = {"auxetic-sandbox": __version__}
-    for name in LIBRARIES:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return {
-        "machine": {
-            "system": platform.platform(),
-            "processor": platform.processor() or platform.machine(),
-            "cores": os.cpu_count(),
-            "python": platform.python_version(),
-        },
-        "versions": versions,
-    }
 
 
 def summary(finding: Finding) -> str:

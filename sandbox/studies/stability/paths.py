@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from sandbox.studies.stability import rigs
 from sandbox.studies.stability.case import REFUSED, Act, Case
 from sandbox.studies.stability.rigs import KINDS

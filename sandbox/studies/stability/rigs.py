@@ -12,9 +12,10 @@ from core.friction import Friction
 from core.generate import Recipe, pack
 from core.material import DEFAULT_POISSON_RATIO
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import FAILED
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from core.settings import Settings
 from sandbox.studies.stability.watch import Watch
 
 WALL = 1.6  # thickness of the walls [R]

@@ -15,9 +15,8 @@ from pathlib import Path
 from core.warmup import compile_kernels
 from sandbox import __version__
 from sandbox.interrupts import deferred
+from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.pool import Pool, stopping
-from sandbox.studies.paper.report import write_text
-from sandbox.studies.paper.study import machine
 from sandbox.studies.stability import material as stability_material
 from sandbox.studies.stability import numbers as stability_numbers
 from sandbox.studies.stability import paths as stability_paths

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from sandbox.session.frame import Frame
 from sandbox.session.history import Event
 from sandbox.words import words
 from scenes import registry
-
-Floats = NDArray[np.float64]
 
 MOST = 12  # of a scene; then the oldest goes
 LONGEST = 80  # characters of a name
