@@ -17,8 +17,8 @@ from sandbox.cli import study as studies
 from sandbox.cli.exit_codes import DIFFERENT, INTERRUPTED, OK
 
 if TYPE_CHECKING:
-    from sandbox.files.scene_file import SceneFile
     from sandbox.record.record import Outcome, Output
+    from sandbox.session.beginning import SceneFile
     from sandbox.session.session import Session
 
 FILM_SUFFIXES = (".mp4", ".gif", ".png")
@@ -182,7 +182,9 @@ def _session(options: argparse.Namespace) -> Session:
                 raise InputError(f"--{name}: a scene file brings its own; leave this out")
         if options.set:
             raise InputError("--set: a scene file brings its own settings; write them there")
-        return Session.from_file(options.scene)
+        from sandbox.files.scene_file import read_scene
+
+        return Session.from_file(read_scene(options.scene))
     settings = arguments.assignments(options.set)
     return Session(options.scene, _packing(options), _seed(options), settings)
 

@@ -35,7 +35,6 @@ from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_nam
 from sandbox.draw.views import VIEWS, view_named
 from sandbox.draw.world import Look, draw_bodies, draw_grains
 from sandbox.session.frame import Frame
-from sandbox.window.solvers.kept_curves import Kept
 from sandbox.words import words
 
 LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
@@ -259,9 +258,3 @@ def curve_of(frame: Frame) -> Curve:
         events=frame.events,
         ahead=ahead,
     )
-
-
-def kept_curve(kept: Kept) -> Curve:
-    """The curve of an earlier run."""
-    colour, dash = packing_colour(kept.packing), packing_dash(kept.packing)
-    return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)

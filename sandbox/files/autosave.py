@@ -21,7 +21,8 @@ from typing import IO
 from platformdirs import user_data_path
 
 from core.errors import InputError
-from sandbox.files.scene_file import Made, SceneFile, read_scene, write_scene
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.beginning import Made, SceneFile
 
 log = logging.getLogger(__name__)
 

@@ -9,14 +9,15 @@ import base64
 import json
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeGuard
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.files.scene_file import SceneFile, parse_scene
+from sandbox.files.scene_file import parse_scene
+from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command, from_data, to_data
+from sandbox.session.log import Log
 
 FORMAT = "auxetic-sandbox log"
 VERSION = 1
@@ -24,23 +25,6 @@ VERSION_WITH_START = 2  # of a log that holds a scene file
 LARGEST = 256 * 1024 * 1024  # bytes
 MOST_LINES = 2_000_000  # a hand at a window gives 60 commands a second
 MOST_INCREMENTS = 10_000_000
-
-
-@dataclass(frozen=True)
-class Log:
-    """A run: ``commands`` are (increments finished before, command), in order; it ended after ``end`` increments in ``hash``.
-
-    The log of a run that began with a scene file holds that file, both parts of it, and needs no other.
-    """
-
-    scene: str
-    packing: str
-    seed: int
-    settings: dict[str, Any]
-    commands: tuple[tuple[int, Command], ...]
-    end: int
-    hash: str
-    start: SceneFile | None = None  # what it began with, if not with the scene as it is built
 
 
 def write_log(path: str | os.PathLike[str], log: Log) -> None:

@@ -14,19 +14,14 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.errors import InputError
 from core.friction import Friction
-from core.generate import inside
 from core.packing import UNREADABLE, Packing
-from core.rigid import Point, RigidBody
+from core.rigid import Point
+from sandbox.session.beginning import Placement
 from sandbox.session.editing import FARTHEST, MOST_GRAINS, MOST_PIECES, MOST_WALLS
-from scenes.scene import Setup
-
-Placement = tuple[float, float, float]
 
 MOST_BODIES = 200
 RADII = (0.05, 50.0)  # [R] of grains at rest
 CROWD = 12  # grains whose centres lie in one square with sides of the smallest grain's radius
-BEYOND = 6.0  # [R] how far outside the picture of its scene something may be
-HAIR = 1e-6  # [R] a difference of places that is none
 
 
 def check_grains(grains: Packing) -> None:
@@ -64,11 +59,11 @@ def _finite(value: object) -> TypeGuard[float]:
     return abs(value) <= 1e15
 
 
-def placements_of(rows: list[Any]) -> dict[str, tuple[float, float, float]]:
+def placements_of(rows: list[Any]) -> dict[str, Placement]:
     """Where the bodies are, by name."""
     if len(rows) > MOST_BODIES:
         raise InputError("more bodies than any scene has")
-    placements: dict[str, tuple[float, float, float]] = {}
+    placements: dict[str, Placement] = {}
     for row in rows:
         if not isinstance(row, dict) or set(row) != {"name", "x", "y", "angle"}:
             raise InputError("each of bodies must have name, x, y and angle, and nothing else")
@@ -123,60 +118,3 @@ def friction_of(
         raise InputError("the frictional memory is not that of these grains")
     Friction(1.0, grains).remember(spin, keys, slips)
     return spin, (keys, slips)
-
-
-def check_fit(
-    setup: Setup, grains: Packing, placements: Mapping[str, Placement], walls: list[RigidBody]
-) -> None:
-    """Raises InputError unless a built scene can have its grains, bodies and walls there."""
-    _check_box(setup, grains)
-    x0, y0, x1, y1 = setup.bounds
-    low, high = np.array([x0, y0]) - BEYOND, np.array([x1, y1]) + BEYOND
-    standing = np.array(grains.folded()).T
-    if np.any((standing < low) | (standing > high)):
-        raise InputError("a grain lies far outside the scene")
-    if setup.outlet is None and setup.follow is None:
-        near = standing[~inside(setup.outline, *standing.T)]
-        corners = np.array(setup.outline)
-        if np.any((near < corners.min(axis=0) - 1.0) | (near > corners.max(axis=0) + 1.0)):
-            raise InputError("a grain lies outside the walls")
-    names = {body.name for body in setup.world.bodies}
-    for name in placements:
-        if name not in names:
-            raise InputError(f"this scene has no body {name!r}")
-    for body in setup.world.bodies:
-        if body.name in placements:
-            _check_placement(body, placements[body.name], low, high, free=setup.follow is not None)
-    if walls and grains.box is not None:
-        raise InputError("there are no drawn walls in a cell that repeats itself")
-
-
-def _check_box(setup: Setup, grains: Packing) -> None:
-    own, other = setup.packing.box, grains.box
-    if (own is None) != (other is None):
-        raise InputError("the grains are not of this scene: only one of them has a periodic cell")
-    if own is None or other is None:
-        return
-    for mine, theirs in ((own.width, other.width), (own.height, other.height)):
-        if math.isinf(mine) != math.isinf(theirs):
-            raise InputError("the periodic cell of the grains is not of this scene")
-        if not math.isinf(mine) and not 0.3 <= theirs / mine <= 3.0:
-            raise InputError("the periodic cell of the grains is not of this scene")
-
-
-def _check_placement(
-    body: RigidBody, placement: Placement, low: Floats, high: Floats, *, free: bool
-) -> None:
-    """Raises InputError unless a hand, or the scene with ``free``, could have brought the body there."""
-    at = np.array(placement[:2])
-    way = at - body.position
-    if body.held or free:
-        allowed = bool(np.all((at > low) & (at < high)))
-    elif body.axis is not None:
-        along = float(np.dot(at - body.home, body.axis))
-        across = float(np.linalg.norm(at - body.home - along * np.array(body.axis)))
-        allowed = body.travel[0] - HAIR <= along <= body.travel[1] + HAIR and across < HAIR
-    else:
-        allowed = bool(np.all(np.abs(way) < HAIR))
-    if not allowed or abs(placement[2] - body.angle) > HAIR:
-        raise InputError(f"body {body.name!r} cannot be where the file has it")

@@ -11,23 +11,15 @@ import io
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
-from core.engine_state import EngineState
 from core.errors import InputError
 from core.files import atomic_write
-from core.friction import Friction
 from core.packing import Packing
-from core.rigid import Point
 from sandbox.files.scene_checks import (
-    Placement,
-    check_fit,
     check_grains,
     friction_of,
     numbers,
@@ -35,14 +27,9 @@ from sandbox.files.scene_checks import (
     walls_of,
 )
 from sandbox.files.toml_text import toml_text
-from sandbox.session.editing import drawn_wall, line_of, poisson_ratio
+from sandbox.session.beginning import Made, SceneFile
+from sandbox.session.editing import line_of
 from scenes import registry
-from scenes.parameter import Value
-from scenes.scene import Setup, Values
-
-if TYPE_CHECKING:
-    from sandbox.session.session import Session
-
 
 FORMAT = "auxetic-sandbox scene"
 VERSION = 1
@@ -67,53 +54,9 @@ _KEYS = {
 }
 
 
-@dataclass(frozen=True)
-class SceneFile:
-    """A scene as it was left: what it was built from, and where its grains, bodies and drawn walls were."""
-
-    name: str  # of the file, for messages
-    scene: str
-    packing: str
-    seed: int
-    settings: dict[str, Value]
-    placements: dict[str, Placement]  # x, y [R] and angle [rad] of every body
-    walls: tuple[tuple[Point, ...], ...]  # lines of the drawn walls [R]
-    grains: Packing
-    spin: Floats | None  # (N,) [rad]; None if there was no friction
-    memory: tuple[NDArray[np.int64], Floats] | None  # of the frictional contacts
-    text: bytes  # the two files themselves, to be put into a log
-    data: bytes
-
-    def of_kind(self, kind: str) -> SceneFile:
-        """The same places with grains of another kind of packing, to be looked at side by side; nothing to be logged."""
-        if kind == self.packing:
-            return self
-        nu = np.array([poisson_ratio(self.settings, one) for one in ("regular", "auxetic")])
-        share = {"regular": 0.0, "auxetic": 1.0}.get(
-            kind, float(self.settings.get("auxetic_fraction", 0.5))
-        )
-        steps = np.floor(np.arange(len(self.grains) + 1) * share + 1e-9)
-        grains = self.grains.copy()
-        grains.poisson_ratio = nu[np.diff(steps).astype(np.int64)]
-        return replace(self, packing=kind, grains=grains, text=b"", data=b"")
-
-
-@dataclass(frozen=True)
-class Made:
-    """What there is to be written: a state between two increments, to which nobody writes any more. Any thread may have it."""
-
-    scene: str
-    packing: str
-    seed: int
-    settings: Values
-    state: EngineState
-    file: SceneFile | None = None  # what it goes on from
-    worth_keeping: bool = True  # has a person done anything?
-
-
 def write_scene(
     path: str | os.PathLike[str],
-    what: Session | Made,
+    made: Made,
     grains: str | None = None,
     *,
     lasting: bool = True,
@@ -126,7 +69,6 @@ def write_scene(
     path = Path(path)
     if path.suffix != SUFFIX:
         raise InputError(f"{path}: the name of a scene file must end in {SUFFIX}")
-    made = what if isinstance(what, Made) else what.made()
     name = grains or path.with_suffix(".npz").name
     friction, bodies = made.state.friction, made.state.bodies
     extra: dict[str, NDArray[Any]] = {}
@@ -210,25 +152,6 @@ def parse_scene(
         text,
         data,
     )
-
-
-def put_into(setup: Setup, file: SceneFile) -> None:
-    """Make a scene that was just built the one of the file. Raises InputError if its parts do not go together."""
-    walls = [drawn_wall(k, line) for k, line in enumerate(file.walls, 1)]
-    try:
-        check_fit(setup, file.grains, file.placements, walls)
-    except InputError as error:
-        raise InputError(f"{file.name}: {error}") from None
-    setup.packing = file.grains.copy()
-    for body in setup.world.bodies:
-        if body.name in file.placements:
-            x, y, angle = file.placements[body.name]
-            body.position, body.angle = (x, y), angle
-    setup.world.redraw(walls)
-    if setup.friction > 0.0:
-        setup.friction_state = Friction(setup.friction, len(file.grains))
-        if file.spin is not None and file.memory is not None:
-            setup.friction_state.remember(file.spin, *file.memory)
 
 
 def _read(path: Path, most: int) -> bytes:

@@ -15,8 +15,8 @@ from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
 if TYPE_CHECKING:
-    from sandbox.files.log_file import Log
     from sandbox.session.frame import Frame
+    from sandbox.session.log import Log
     from sandbox.session.session import Session
 
 # Relaxation steps between two looks at the clock and at Ctrl-C: a fraction of a second.

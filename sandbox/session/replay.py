@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterator
 
 from core.errors import InputError
-from sandbox.files.log_file import Log
+from sandbox.session.log import Log
 from sandbox.session.session import Progress, Session
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -12,9 +11,7 @@ from typing import get_args
 from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
 from core.warmup import compile_kernels
-from sandbox.files.log_file import Log
-from sandbox.files.log_file import write_log as write_log_file
-from sandbox.files.scene_file import Made, SceneFile, put_into, read_scene
+from sandbox.session.beginning import Made, SceneFile, put_into
 from sandbox.session.commands import (
     Change,
     Command,
@@ -36,6 +33,7 @@ from sandbox.session.commands import (
 )
 from sandbox.session.frame import Frame
 from sandbox.session.history import History
+from sandbox.session.log import Log
 from sandbox.session.run import Run
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
@@ -82,11 +80,10 @@ class Session:
         self._progress: Progress | None = None
 
     @classmethod
-    def from_file(cls, file: str | os.PathLike[str] | SceneFile) -> Session:
-        """A session that begins where a scene file was written. Raises InputError for one that cannot be read."""
-        kept = file if isinstance(file, SceneFile) else read_scene(file)
-        session = cls(kept.scene, kept.packing, kept.seed, kept.settings)
-        session._file = session._first_file = kept
+    def from_file(cls, file: SceneFile) -> Session:
+        """A session that begins where a scene file was written."""
+        session = cls(file.scene, file.packing, file.seed, file.settings)
+        session._file = session._first_file = file
         return session
 
     def build(self, progress: Progress | None = None) -> None:
@@ -329,10 +326,6 @@ class Session:
             raise RuntimeError("finish the increment before taking the log")
         commands, end, digest = tuple(self._commands), self._finished, self.state_hash()
         return Log(*self._first, commands, end, digest, self._first_file)
-
-    def write_log(self, path: str) -> None:
-        """Write the log whole or not at all."""
-        write_log_file(path, self.log())
 
 
 def _silent(text: str, share: float) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from core.engine_state import BodyState
 from core.errors import InputError
 from core.packing import Packing
-from sandbox.files.scene_file import SceneFile
+from sandbox.session.beginning import SceneFile
 from sandbox.session.checkpoints import MOST_BYTES, Checkpoint
 from sandbox.session.commands import Change, Command, Erase, Place, Recall, Retype
 from sandbox.session.run import Run

@@ -17,7 +17,7 @@ from sandbox.draw.render import Renderer
 from sandbox.draw.warmup import Warmup
 from sandbox.files import autosave
 from sandbox.files.autosave import Leftover
-from sandbox.files.scene_file import SceneFile
+from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.arrows import Arrows

@@ -10,8 +10,11 @@ import pygame
 from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flashes
 from sandbox.draw.overlays import Hand
-from sandbox.draw.render import Renderer, kept_curve
+from sandbox.draw.plot import Curve
+from sandbox.draw.render import Renderer
+from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.session.frame import Frame
+from sandbox.window.solvers.kept_curves import Kept
 from sandbox.window.solvers.panes import Run
 from sandbox.window.solvers.solver_thread import Snapshot
 from sandbox.words import words
@@ -91,6 +94,12 @@ def progress_of(snapshot: Snapshot) -> str:
     if math.isfinite(snapshot.fraction):
         text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
     return text
+
+
+def kept_curve(kept: Kept) -> Curve:
+    """The curve of an earlier run."""
+    colour, dash = packing_colour(kept.packing), packing_dash(kept.packing)
+    return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)
 
 
 def _told(snapshot: Snapshot) -> tuple[str, ...]:

@@ -177,7 +177,8 @@ def test_one_thing_is_something_else(
     remove: bool,
 ) -> None:
     """Reading refuses it in one line, or it is a log."""
-    from sandbox.files.log_file import Log, read_log
+    from sandbox.files.log_file import read_log
+    from sandbox.session.log import Log
 
     records = [dict(HEAD), dict(GRAB), dict(MOVE), dict(END)]
     if remove:

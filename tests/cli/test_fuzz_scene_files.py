@@ -41,7 +41,7 @@ def parts(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
         while not session.idle:
             session.advance(1000)
     path = tmp_path_factory.mktemp("made") / "made.toml"
-    write_scene(path, session)
+    write_scene(path, session.made())
     return path.read_bytes(), path.with_suffix(".npz").read_bytes()
 
 

@@ -15,7 +15,7 @@ import pytest
 from core.packing import Packing
 from sandbox.files import autosave
 from sandbox.files.autosave import Autosave, find
-from sandbox.files.scene_file import SceneFile
+from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import DrawWall, Place, Protocol
 from sandbox.session.session import Session
 from tests.session.test_editing import built, do

@@ -19,8 +19,9 @@ from hypothesis import strategies as st
 from core.errors import InputError
 from core.packing import Packing, PeriodicBox
 from sandbox.files.log_file import read_log, write_log
-from sandbox.files.scene_file import SceneFile, read_scene, write_scene
+from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.files.toml_text import toml_text
+from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, DrawWall, Erase, Place, Protocol, Reset, Undo
 from sandbox.session.editing import line_of
 from sandbox.session.replay import replay
@@ -53,7 +54,7 @@ def drive(session: Session, increments: int) -> None:
 def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Session]:
     session = workshop(friction=0.4)
     path = tmp_path_factory.mktemp("scenes") / "made.toml"
-    write_scene(path, session)
+    write_scene(path, session.made())
     return path, session
 
 
@@ -91,7 +92,7 @@ def seal(path: Path) -> None:
 def assert_refused(path: Path, why: str | None = None) -> None:
     """Reading or building ends in one line that names the file."""
     with pytest.raises(InputError, match=why) as caught:
-        Session.from_file(path).build()
+        Session.from_file(read_scene(path)).build()
     assert "\n" not in str(caught.value)
     assert path.stem in str(caught.value)
 
@@ -106,7 +107,7 @@ def test_what_was_made_comes_back(made: tuple[Path, Session]) -> None:
     assert file.settings == session.settings
     assert file.grains.hash() == session.run.setup.packing.hash()
     assert file.walls == tuple(line_of(wall) for wall in session.run.setup.world.drawn)
-    again = Session.from_file(path)
+    again = Session.from_file(read_scene(path))
     again.build()
     assert_whole(again)
     old, new = session.run, again.run
@@ -138,8 +139,8 @@ def test_every_scene_goes_on_from_its_file(
 ) -> None:
     session = built(scene, **values)
     drive(session, 6)
-    write_scene(tmp_path / "it.toml", session)
-    again = Session.from_file(tmp_path / "it.toml")
+    write_scene(tmp_path / "it.toml", session.made())
+    again = Session.from_file(read_scene(tmp_path / "it.toml"))
     again.build()
     one, other = session.run.setup, again.run.setup
     assert one.packing.label.tolist() == other.packing.label.tolist()
@@ -163,8 +164,8 @@ def test_every_scene_goes_on_from_its_file(
 def test_frictional_contacts_go_on_as_they_were(tmp_path: Path) -> None:
     session = built("intruder", grains=80, intruder_radius=2.0, friction=0.6)
     drive(session, 8)
-    write_scene(tmp_path / "it.toml", session)
-    again = Session.from_file(tmp_path / "it.toml")
+    write_scene(tmp_path / "it.toml", session.made())
+    again = Session.from_file(read_scene(tmp_path / "it.toml"))
     again.build()
     assert session.run.engine.friction is not None
     assert again.run.engine.friction is not None
@@ -180,7 +181,7 @@ def test_frictional_contacts_go_on_as_they_were(tmp_path: Path) -> None:
 
 
 def test_reset_and_undo_go_back_to_the_file(made: tuple[Path, Session]) -> None:
-    session = Session.from_file(made[0])
+    session = Session.from_file(read_scene(made[0]))
     session.build()
     start, grains = session.state_hash(), session.frame().grains
     do(session, Erase(15.0, 10.0, 30.0), *[Protocol(True)] * 3, Reset())
@@ -195,10 +196,10 @@ def test_reset_and_undo_go_back_to_the_file(made: tuple[Path, Session]) -> None:
 
 
 def test_a_log_of_it_needs_no_other_file(made: tuple[Path, Session], tmp_path: Path) -> None:
-    session = Session.from_file(made[0])
+    session = Session.from_file(read_scene(made[0]))
     session.build()
     do(session, Protocol(True), Protocol(True), Place(20.0, 10.0, "regular"))
-    session.write_log(str(tmp_path / "it.jsonl"))
+    write_log(tmp_path / "it.jsonl", session.log())
     log = read_log(tmp_path / "it.jsonl")
     assert log.start is not None
     assert log.start.text == made[0].read_bytes()
@@ -208,10 +209,10 @@ def test_a_log_of_it_needs_no_other_file(made: tuple[Path, Session], tmp_path: P
 
 
 def test_a_log_with_a_spoilt_start_is_refused(made: tuple[Path, Session], tmp_path: Path) -> None:
-    session = Session.from_file(made[0])
+    session = Session.from_file(read_scene(made[0]))
     session.build()
     path = tmp_path / "it.jsonl"
-    session.write_log(str(path))
+    write_log(path, session.log())
     text = path.read_text()
     for old, new in (
         ('"version": 2', '"version": 1'),
@@ -258,11 +259,11 @@ def test_a_file_is_text_that_people_read(made: tuple[Path, Session]) -> None:
 def test_writing_fails_whole(made: tuple[Path, Session], tmp_path: Path) -> None:
     session = made[1]
     with pytest.raises(InputError, match="end in"):
-        write_scene(tmp_path / "it.json", session)
+        write_scene(tmp_path / "it.json", session.made())
     with pytest.raises(InputError, match="plain letters"):
-        write_scene(tmp_path / "\udcff.toml", session)
+        write_scene(tmp_path / "\udcff.toml", session.made())
     with pytest.raises(FileNotFoundError):
-        write_scene(tmp_path / "nowhere" / "it.toml", session)
+        write_scene(tmp_path / "nowhere" / "it.toml", session.made())
     assert not list(tmp_path.iterdir())
 
 
@@ -271,18 +272,18 @@ def test_within_an_increment_it_is_the_state_before(tmp_path: Path) -> None:
     before = session.run.setup.packing.hash()
     session.submit(Protocol(True))
     session.advance(1)
-    write_scene(tmp_path / "it.toml", session)
+    write_scene(tmp_path / "it.toml", session.made())
     assert len(session.history) == 1  # it has not ended
     assert read_scene(tmp_path / "it.toml").grains.hash() == before
 
 
 def test_odd_names_survive(made: tuple[Path, Session], tmp_path: Path) -> None:
     path = tmp_path / "Grüße 'x' \u2028#[1].toml"
-    write_scene(path, made[1])
+    write_scene(path, made[1].made())
     assert read_scene(path).grains.hash() == made[1].run.setup.packing.hash()
-    session = Session.from_file(path)
+    session = Session.from_file(read_scene(path))
     session.build()
-    session.write_log(str(tmp_path / "it.jsonl"))
+    write_log(tmp_path / "it.jsonl", session.log())
     assert read_log(tmp_path / "it.jsonl").start is not None
 
 
@@ -367,7 +368,7 @@ def test_toml_knows_no_more_than_that(value: object) -> None:
 def test_texts_that_are_none(copy: Path, old: str, new: str, why: str | None) -> None:
     spoil(copy, old, new)
     with pytest.raises(InputError, match=why) as caught:
-        Session.from_file(copy).build()
+        Session.from_file(read_scene(copy)).build()
     assert "\n" not in str(caught.value)
 
 
@@ -482,7 +483,7 @@ def test_the_cell_must_be_that_of_the_scene(tmp_path: Path) -> None:
     session = built("avalanches", grains=60)
     path = tmp_path / "it.toml"
     for box in (PeriodicBox(100.0, 100.0), PeriodicBox(12.0), None):
-        write_scene(path, session)
+        write_scene(path, session.made())
         packing = session.run.setup.packing.copy()
         packing.box = box
         packing.save(path.with_suffix(".npz"))
@@ -492,7 +493,7 @@ def test_the_cell_must_be_that_of_the_scene(tmp_path: Path) -> None:
 
 def test_walls_through_everything_are_relaxed_or_refused(copy: Path) -> None:
     spoil(copy, "points = [[25.0, 5.0]]", "points = [[1.0, 1.0], [30.0, 19.0], [1.0, 19.0]]")
-    session = Session.from_file(copy)
+    session = Session.from_file(read_scene(copy))
     try:
         session.build()
     except InputError as error:

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sandbox.files.log_file import read_log
+from sandbox.files.log_file import read_log, write_log
 from sandbox.session.commands import (
     Change,
     Command,
@@ -116,7 +116,7 @@ def test_any_sequence_of_commands(name: str, data: st.DataObject, tmp_path: Path
     handle = session.run.setup.handles[0].body
     obey(session, watch, [(Grab(handle), 0), (Move(handle, 3.0, 3.0), 3), *steps])
     path = tmp_path / "run.jsonl"
-    session.write_log(str(path))
+    write_log(path, session.log())
     log = read_log(path)
     again = list(replay(log, slice_iterations=97))[-1]
     assert again.state_hash() == log.hash == session.state_hash()

@@ -16,7 +16,7 @@ from core.errors import InputError
 from core.generate import inside
 from core.quasistatic import Quasistatic
 from core.relaxation import StopReason
-from sandbox.files.log_file import read_log
+from sandbox.files.log_file import read_log, write_log
 from sandbox.session import editing
 from sandbox.session import free_room as room
 from sandbox.session.commands import (
@@ -415,7 +415,7 @@ def test_what_was_made_replays_to_the_same_bits(tmp_path: Path) -> None:
     do(session, DrawWall(((-3.0, 9.0), (2.0, 8.0), (2.0, 7.0))), Place(0.0, 5.0, "auxetic"))
     do(session, Erase(0.0, 6.0, 1.5), Retype(0.0, 8.0, 3.0, "auxetic"), *[Protocol(True)] * 5)
     do(session, Undo(), Place(1.0, 4.0, "regular"), EraseWall(2.0, 7.5), Redo(), Undo(), Undo())
-    session.write_log(str(tmp_path / "made.jsonl"))
+    write_log(tmp_path / "made.jsonl", session.log())
     log = read_log(tmp_path / "made.jsonl")
     assert len(log.commands) > 8
     again = list(replay(log, slice_iterations=61))[-1]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.files.log_file import read_log
+from sandbox.files.log_file import read_log, write_log
 from sandbox.session.commands import (
     Change,
     Command,
@@ -82,7 +82,7 @@ def test_a_log_replays_to_the_same_bits(make: Callable[[], Session], tmp_path: P
     drag(session, Change("packing", "auxetic"), Grab(name), Move(name, x, y - 4.0))
     run(session, 3)
     path = tmp_path / "run.jsonl"
-    session.write_log(str(path))
+    write_log(path, session.log())
     log = read_log(path)
     assert log.hash == session.state_hash()
     assert log.end == session.finished == 15
@@ -161,7 +161,7 @@ def test_numbers_that_are_none_are_refused_and_never_logged(
     run(session, 3)
     assert session.state_hash() == start
     assert "finite" in session.frame().notices[0]
-    session.write_log(str(tmp_path / "run.jsonl"))
+    write_log(tmp_path / "run.jsonl", session.log())
     assert read_log(tmp_path / "run.jsonl").commands == ((0, Grab("intruder")),)
 
 

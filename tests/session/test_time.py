@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sandbox.files.log_file import read_log
+from sandbox.files.log_file import read_log, write_log
 from sandbox.session.commands import (
     Change,
     Command,
@@ -252,7 +252,7 @@ def test_a_log_with_all_of_it_replays_to_the_same_bits(tmp_path: Path) -> None:
     do(session, Undo(), Undo(), Undo())
     go(session, 2)
     path = tmp_path / "run.jsonl"
-    session.write_log(str(path))
+    write_log(path, session.log())
     log = read_log(path)
     assert {type(command) for _, command in log.commands} >= {Recall, Undo, Redo}
     again = list(replay(log, slice_iterations=77))[-1]

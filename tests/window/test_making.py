@@ -46,7 +46,7 @@ def run(tmp_path: Path) -> Iterator[Run]:
 def file(tmp_path: Path) -> Path:
     session = built(grains=0)
     do(session, WALL, Place(10.0, 4.0, "regular"), Place(13.0, 4.0, "auxetic"))
-    write_scene(tmp_path / "made.toml", session)
+    write_scene(tmp_path / "made.toml", session.made())
     return tmp_path / "made.toml"
 
 

@@ -12,8 +12,11 @@ import pygame
 import pytest
 
 from core.errors import InputError
+from sandbox.files.log_file import read_log
 from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.session.log import Log
 from sandbox.window import display
+from sandbox.window.solvers import panes
 from sandbox.words import language, words
 from scenes import registry
 from tests.window.desk import Desk
@@ -323,7 +326,7 @@ def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
     desk.key(pygame.K_a)
     desk.until(lambda: desk.session.increments > 1)
     desk.app.close(tmp_path / "run.jsonl")
-    assert desk.session.logged == str(tmp_path / "run.jsonl")
+    assert read_log(tmp_path / "run.jsonl").end == desk.session.increments
     assert not desk.session.busy
 
 
@@ -376,14 +379,16 @@ def test_rate_says_what_holds_it_up() -> None:
     assert "drawing takes 50 ms" in rate.text
 
 
-def test_log_that_cannot_be_written_is_an_input_error(tmp_path: Path) -> None:
+def test_log_that_cannot_be_written_is_an_input_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     desk = Desk()
     desk.start()
 
-    def full(path: str) -> None:
+    def full(path: Path, log: Log) -> None:
         raise OSError(28, "No space left on device")
 
-    desk.session.write_log = full  # type: ignore[method-assign]
+    monkeypatch.setattr(panes, "write_log", full)
     with pytest.raises(InputError, match="No space left"):
         desk.app.close(tmp_path / "run.jsonl")
 

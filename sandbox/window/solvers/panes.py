@@ -9,7 +9,9 @@ from dataclasses import dataclass
 
 from core.errors import InputError
 from sandbox.files.autosave import Autosave, Leftover
-from sandbox.files.scene_file import SceneFile, read_scene, write_scene
+from sandbox.files.log_file import write_log
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, Command, Protocol, Recall, Redo, Reset, Undo
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
@@ -325,7 +327,7 @@ class Run:
         ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
         if log is not None and wanted and ended and main is not None:
             try:
-                main.session.write_log(os.fspath(log))
+                write_log(log, main.session.log())
             except OSError as error:
                 raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
         stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 from core.errors import InputError
-from sandbox.files.scene_file import Made
+from sandbox.session.beginning import Made
 from sandbox.session.commands import Command
 from sandbox.session.frame import Frame
 from sandbox.window.solvers.conductor import Conductor, Turn
