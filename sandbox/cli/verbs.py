@@ -82,13 +82,9 @@ def record(options: argparse.Namespace) -> int:
     steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.record import record as films
-    from sandbox.record.record_side_by_side import record_side_by_side
 
     with stop_like_ctrl_c():
-        if len(sessions) == 1:
-            outcome = films.record(sessions[0], steps, output)
-        else:
-            outcome = record_side_by_side(sessions, steps, output)
+        outcome = films.record(sessions, steps, output)
     _report(sessions, outcome, output)
     return INTERRUPTED if outcome.interrupted else OK
 

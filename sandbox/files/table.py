@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Protocol
 
@@ -19,6 +19,23 @@ class Table(Protocol):
     def header(self) -> list[str]: ...
 
     def rows(self) -> Iterable[Sequence[object]]: ...
+
+
+class SideBySide:
+    """The tables of several packings as one, with a column that says which."""
+
+    def __init__(self, tables: Sequence[tuple[str, Table]]) -> None:
+        self._tables = tables
+
+    def header(self) -> list[str]:
+        """As that of one, after the packing."""
+        return ["packing", *self._tables[0][1].header()]
+
+    def rows(self) -> Iterator[tuple[object, ...]]:
+        """Packing after packing."""
+        for packing, table in self._tables:
+            for row in table.rows():
+                yield (packing, *row)
 
 
 def write_csv(path: str | os.PathLike[str], history: Table) -> None:

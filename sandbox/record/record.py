@@ -1,16 +1,18 @@
-"""Runs a session without a window, increment by increment, and writes down what it sees."""
+"""Runs one packing or several without a window, increment by increment, and writes down what it sees."""
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from sandbox.files.table import Table, write_csv
+from sandbox.files.table import SideBySide, Table, write_csv
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
@@ -46,18 +48,19 @@ class Outcome:
     interrupted: bool
 
 
-def record(session: Session, steps: int, output: Output) -> Outcome:
-    """Build the session, run its scripted protocol for ``steps`` increments, write the output.
+def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
+    """Build all sessions, run their scripted protocols for ``steps`` increments, write the output.
 
     One frame an increment. Ctrl-C, or the end of the protocol, ends the run early; everything done
     until then is written.
     """
     from sandbox.session.commands import Protocol
 
-    with build_bar() as progress:
-        session.build(progress)
-    session.submit(Protocol(True))
-    return run([session], slices(session), steps, output)
+    for session in sessions:
+        with build_bar() as progress:
+            session.build(progress)
+        session.submit(Protocol(True))
+    return run(sessions, in_step(sessions), steps, output)
 
 
 def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
@@ -73,13 +76,22 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
     return session, outcome
 
 
-def slices(session: Session) -> Iterator[bool]:
-    """Work slice by slice until there is nothing to do; True where an increment was finished."""
-    while True:
-        finished = session.advance(SLICE)
-        if not finished and session.idle:
-            return
-        yield finished
+def in_step(sessions: Sequence[Session]) -> Iterator[bool]:
+    """Work slice by slice, in all at the same time, until none has anything to do; True where an increment was finished.
+
+    Each packing relaxes every increment to the end before any begins the next; one that is done waits. So the result does
+    not depend on how fast the machine is.
+    """
+    with ThreadPoolExecutor(min(len(sessions), os.cpu_count() or 1)) as pool:
+        finished = True
+        while finished:
+            at_work, finished = list(sessions), False
+            while at_work:
+                done = list(pool.map(lambda session: session.advance(SLICE), at_work))
+                finished |= any(done)
+                at_work = [s for s, d in zip(at_work, done, strict=True) if not (d or s.idle)]
+                if at_work or finished:
+                    yield not at_work
 
 
 def run(
@@ -123,9 +135,9 @@ def run(
 
 
 def _table(sessions: Sequence[Session]) -> Table:
-    from sandbox.record.record_side_by_side import SideBySide
-
-    return sessions[0].history if len(sessions) == 1 else SideBySide(sessions)
+    if len(sessions) == 1:
+        return sessions[0].history
+    return SideBySide([(session.packing, session.history) for session in sessions])
 
 
 @contextmanager

@@ -126,7 +126,7 @@ def begin(*_: object, **__: object) -> None:
 def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Run in an empty folder, with everything that takes long replaced."""
     from sandbox import environment
-    from sandbox.record import record, record_side_by_side
+    from sandbox.record import record
     from sandbox.studies.accuracy import study as accuracy
     from sandbox.studies.bench import bench
     from sandbox.studies.common import folder as studies_folder
@@ -144,7 +144,6 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
             (app, "run"),
             (record, "record"),
             (record, "repeat"),
-            (record_side_by_side, "record_side_by_side"),
             (bench, "run"),
             (studies_folder, "prepare_folder"),
             (stability, "study"),

@@ -73,7 +73,7 @@ def session(monkeypatch: pytest.MonkeyPatch) -> Cardboard:
 
 def run(session: Any, steps: int, film: Path | None, table: Path | None) -> Outcome:
     output = Output(film, table, SIZE)
-    return record.run([session], record.slices(session), steps, output)
+    return record.run([session], record.in_step([session]), steps, output)
 
 
 def test_a_frame_and_a_row_per_increment(tmp_path: Path, session: Cardboard) -> None:

@@ -10,8 +10,7 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli import main as cli
-from sandbox.record.record import Output
-from sandbox.record.record_side_by_side import in_step, record_side_by_side
+from sandbox.record.record import Output, record
 from sandbox.session.session import Session
 
 KINDS = ("regular", "mixed", "auxetic")
@@ -27,7 +26,7 @@ def test_in_step_and_the_same_bits_again(tmp_path: Path) -> None:
     for name in ("a", "b"):
         made = sessions()
         output = Output(tmp_path / f"{name}.gif", tmp_path / f"{name}.csv", (640, 360))
-        outcome = record_side_by_side(made, 4, output)
+        outcome = record(made, 4, output)
         assert (outcome.increments, outcome.frames, outcome.rows) == (4, 4, 3 * 5)
         assert [session.finished for session in made] == [4, 4, 4]
         hashes.append([session.state_hash() for session in made])
@@ -43,15 +42,9 @@ def test_in_step_and_the_same_bits_again(tmp_path: Path) -> None:
 
 def test_alone_a_packing_does_the_same(tmp_path: Path) -> None:
     made = sessions()
-    record_side_by_side(made, 3, Output(None, tmp_path / "all.csv"))
+    record(made, 3, Output(None, tmp_path / "all.csv"))
     alone = sessions()[1]
-    alone.build()
-    from sandbox.session.commands import Protocol
-
-    alone.submit(Protocol(True))
-    rounds = in_step([alone])
-    for _ in range(3):
-        next(rounds)
+    record([alone], 3, Output(None, tmp_path / "one.csv"))
     assert alone.state_hash() == made[1].state_hash()
 
 
