@@ -128,36 +128,10 @@ def test_imports_run_downhill(name: str) -> None:
         assert other in HALL or room_of(other) in allowed, f"{name}:{line} imports {other}"
 
 
-# Modules that import one another in a circle today; the list only shrinks.
-CIRCLES = {
-    "sandbox.window.actions",
-    "sandbox.window.app",
-    "sandbox.window.canvas.arrows",
-    "sandbox.window.pages",
-    "sandbox.window.canvas.brush",
-    "sandbox.window.canvas.canvas",
-    "sandbox.window.panel.curves",
-    "sandbox.window.panel.drawer",
-    "sandbox.window.panel.scene_files",
-    "sandbox.window.panel.general",
-    "sandbox.window.canvas.inspector",
-    "sandbox.window.panel.looks",
-    "sandbox.window.panel.panel",
-    "sandbox.window.press",
-    "sandbox.window.sections",
-    "sandbox.window.panel.parameters",
-    "sandbox.window.timeline",
-    "sandbox.window.guide",
-}
-
-
 @pytest.mark.parametrize("name", sorted(NAMES))
 def test_no_circle_of_imports(name: str) -> None:
     way = circle_through(name)
-    if name in CIRCLES:
-        assert way, f"{name} is in no circle any more: take it from the list"
-    else:
-        assert not way, " imports ".join(way)
+    assert not way, " imports ".join(way)
 
 
 def loaded_after(code: str) -> set[str]:

@@ -5,8 +5,6 @@ It stands above the panel; where there is no panel, in the corner of the canvas 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pygame
 
@@ -25,12 +23,10 @@ from sandbox.draw.text import Type
 from sandbox.window import tours
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
+from sandbox.window.stage import Stage
 from sandbox.window.tours import Moment, Step
 from sandbox.words import words
 from scenes.text import message
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 WIDTH = 372.0  # of the card on the canvas at scale 1 [px]
 MARGIN = 10.0  # round it, at scale 1 [px]
@@ -45,8 +41,8 @@ PLOT_COST = 1_000  # and a covered plot
 class Guide(Silent):
     """Which tour is on, which step, and whether it is done."""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
         self.scene = ""
         self.index = 0
         self.done = False
@@ -73,19 +69,19 @@ class Guide(Silent):
         """Begin the tour of a scene."""
         self._steps, self.scene = tours.steps(scene), scene
         if not self._steps:
-            self.app.toast(words.NO_TOUR)
+            self.stage.toast(words.NO_TOUR)
             return
-        self.app.has_begun()
+        self.stage.has_begun()
         if not self._steps[0].packings:
-            self.app.start(scene)
+            self.stage.start(scene)
         self._go(0)
 
     def close(self) -> None:
         """No more of it."""
         self._steps, self._hover = (), ""
-        if self.app.focus.name in (NEXT, BACK, CLOSE):
-            self.app.focus.leave()
-        self.app.redraw(True)
+        if self.stage.focus.name in (NEXT, BACK, CLOSE):
+            self.stage.focus.leave()
+        self.stage.redraw(True)
 
     def next(self) -> None:
         """The explanation, if it is not shown yet; else the next step; after the last the end."""
@@ -96,8 +92,8 @@ class Guide(Silent):
             self._go(self.index + 1)
         else:
             self.close()
-            self.app.toast(words.TOUR_OVER)
-        self.app.redraw(True)
+            self.stage.toast(words.TOUR_OVER)
+        self.stage.redraw(True)
 
     def back(self) -> None:
         """The step before."""
@@ -112,25 +108,25 @@ class Guide(Silent):
                 self._begin(step)
             except InputError as error:
                 self.close()
-                self.app.toast(words.say(message(error)))
+                self.stage.toast(words.say(message(error)))
                 return
         if step.view:
-            self.app.renderer.set_view(step.view)
+            self.stage.renderer.set_view(step.view)
         self.done = step.until is None
-        self.app.redraw(True)
+        self.stage.redraw(True)
 
     def _begin(self, step: Step) -> None:
         several = len(step.packings) > 1
         if not several:
-            self.app.run.packing = step.packings[0]
-        self.app.start(self.scene, step.settings, step.packings if several else ())
+            self.stage.panes.packing = step.packings[0]
+        self.stage.start(self.scene, step.settings, step.packings if several else ())
 
     def tick(self, now: float) -> bool:
         """Has it been done?"""
         del now
         if not self.on:
             return False
-        run = self.app.run
+        run = self.stage.panes
         if run.scene != self.scene:
             self.close()
             return True
@@ -138,7 +134,7 @@ class Guide(Silent):
         there = [frame for frame in frames if frame is not None]
         if self.done or self.step.until is None or len(there) < max(len(run.snapshots), 1):
             return False
-        moment = Moment.of(there, self.app.renderer.view.name)
+        moment = Moment.of(there, self.stage.renderer.view.name)
         if self._then is None:
             self._then = moment
         self.done = tours.met(self.step.until, self._then, moment)
@@ -153,7 +149,7 @@ class Guide(Silent):
         if self.on:
             self.close()
         else:
-            self.start(self.app.run.scene)
+            self.start(self.stage.panes.scene)
         return True
 
     def handle(self, event: pygame.event.Event) -> bool:
@@ -164,7 +160,7 @@ class Guide(Silent):
             return self._key(event.key)
         if event.type not in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN):
             return False
-        if self.app.mouse.holding:
+        if self.stage.mouse.holding:
             return False
         self._hover = self._button_at(event.pos)
         inside = self.rect.collidepoint(event.pos)
@@ -173,7 +169,7 @@ class Guide(Silent):
         return inside
 
     def _key(self, key: int) -> bool:
-        focus = self.app.focus
+        focus = self.stage.focus
         enter = key in (pygame.K_RETURN, pygame.K_KP_ENTER)
         if focus.name in self.stops():
             if enter or key == pygame.K_SPACE:
@@ -198,7 +194,7 @@ class Guide(Silent):
 
     def cursor(self) -> int | None:
         """A hand over a button, an arrow over the card."""
-        if not self.on or self.app.mouse.holding:
+        if not self.on or self.stage.mouse.holding:
             return None
         if not self.rect.collidepoint(pygame.mouse.get_pos()):
             return None
@@ -237,17 +233,17 @@ class Guide(Silent):
     @property
     def docked(self) -> int:
         """How much of the panel's height the card takes, margins included [px]; 0: it stands on the canvas."""
-        panel = self.app.renderer.layout.panel
+        panel = self.stage.renderer.layout.panel
         if not self.on or not panel.width:
             return 0
         margin = self._margin
         tall = self._layout(panel.width - 2 * margin).height + 2 * margin
-        return tall if panel.height - tall >= LEAST_PANEL * self.app.renderer.scale else 0
+        return tall if panel.height - tall >= LEAST_PANEL * self.stage.renderer.scale else 0
 
     @property
     def rect(self) -> pygame.Rect:
         """Where the card is in the window [px]."""
-        layout, margin = self.app.renderer.layout, self._margin
+        layout, margin = self.stage.renderer.layout, self._margin
         if tall := self.docked:
             panel = layout.panel
             return pygame.Rect(
@@ -272,7 +268,7 @@ class Guide(Silent):
     @property
     def _type(self) -> Type:
         """The type on the card: smaller than elsewhere where the card would hide the canvas."""
-        layout, type_ = self.app.renderer.layout, self.app.renderer.type
+        layout, type_ = self.stage.renderer.layout, self.stage.renderer.type
         if layout.panel.width:
             return type_
         canvas = layout.canvases[-1].right - layout.canvases[0].left
@@ -285,7 +281,7 @@ class Guide(Silent):
 
     @property
     def _margin(self) -> int:
-        return round(MARGIN * self.app.renderer.scale)
+        return round(MARGIN * self.stage.renderer.scale)
 
     def _layout(self, width: int) -> CardLayout:
         """The card at that width [px]; measured again only when it has changed."""
@@ -297,8 +293,8 @@ class Guide(Silent):
 
     def _covered(self, rect: pygame.Rect) -> int:
         """What a card there would cover: grains, and handles for very many."""
-        cost, scale = 0, self.app.renderer.scale
-        for frame, camera, _ in self.app.panes():
+        cost, scale = 0, self.stage.renderer.scale
+        for frame, camera, _ in self.stage.picture.panes():
             left, bottom = camera.to_world(rect.left, rect.bottom)
             right, top = camera.to_world(rect.right, rect.top)
             beside = (frame.x > left) & (frame.x < right)
@@ -316,5 +312,5 @@ class Guide(Silent):
         if self._type is not painter.type:
             painter.flush()
             own = Painter(painter.surface, painter.theme, self._type)
-        draw_tour_card(own, self.rect, self.page, focus=self.app.focus.ring, hover=self._hover)
+        draw_tour_card(own, self.rect, self.page, focus=self.stage.focus.ring, hover=self._hover)
         own.flush()

@@ -1,35 +1,105 @@
-"""What the scene menu leads to: a scene, a tour, a file, or what was left unfinished."""
+"""Pages over the window: the scene menu with all that it leads to, and the page of keys."""
 
 from __future__ import annotations
 
 import contextlib
 import time
-from typing import TYPE_CHECKING
+
+import pygame
 
 from core.errors import InputError
+from sandbox.draw.pages.help_page import HelpLayout, draw_help
 from sandbox.draw.pages.menu_layout import DISCARD, KEYS, LANGUAGE, START, TAKE_UP, THEME
+from sandbox.draw.painter import Painter
 from sandbox.files import autosave
+from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
-from sandbox.window.menu import Choice
+from sandbox.window.menu import Choice, Menu
+from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes.text import message
 
-if TYPE_CHECKING:
-    from sandbox.window.app import App
-
 START_SCENE = "hopper"  # whose tour begins with three packings side by side
+ACTIONS = {KEYS: Action.HELP, LANGUAGE: Action.LANGUAGE, THEME: Action.THEME}
 MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0  # [s]
 
 
-class Beginnings:
-    """Carries out choices. Autosaves of programs that are gone are looked for once."""
+class HelpPage:
+    """All keys; arrows and wheel scroll where not all of them fit."""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self) -> None:
+        self.scroll = 0
+        self._places: HelpLayout | None = None
+
+    def act(self, action: Action, step: int) -> bool:
+        """Scroll by ``step`` pixels; True if that is what the key means."""
+        ways = {Action.UP: 1.0, Action.DOWN: -1.0}
+        if action in ways:
+            self.wheel(ways[action], step)
+        return action in ways
+
+    def wheel(self, notches: float, step: int) -> None:
+        """Scroll by notches of ``step`` pixels, up where they are positive."""
+        most = 0 if self._places is None else self._places.most_scroll
+        self.scroll = max(0, min(round(self.scroll - notches * step), most))
+
+    def draw(self, painter: Painter) -> None:
+        """Draw the page over the picture."""
+        self._places = draw_help(painter, self.scroll)
+        self.scroll = min(self.scroll, self._places.most_scroll)
+
+
+class Pages:
+    """The menu and the page of keys. Carries out choices; autosaves of programs that are gone are looked for once."""
+
+    def __init__(self, stage: Stage, guide: Guide) -> None:
+        self.stage, self.guide = stage, guide
+        self.menu = Menu()
+        self.help = HelpPage()
         self._left: list[autosave.Leftover] = []
         self._looked = False
+        stage.at_new_scene(lambda: self.menu.choose(stage.panes.scene))
 
-    def look_for_leftovers(self) -> None:
+    def open_menu(self) -> None:
+        """Show the scenes; what runs is held meanwhile."""
+        stage = self.stage
+        stage.mouse.release(stage.send)
+        stage.panes.hold()
+        stage.show_menu, stage.show_help = True, False
+        self._look_for_leftovers()
+        self.menu.open(stage.panes.scene if stage.panes.exists else "")
+        stage.redraw(True)
+
+    def mouse(self, event: pygame.event.Event) -> Action | None:
+        """The mouse, while a page is shown. What it asks for, if that is an action."""
+        if self.stage.show_help:
+            self.stage.show_help = event.type != pygame.MOUSEBUTTONDOWN
+        elif self.stage.show_menu and event.type == pygame.MOUSEMOTION:
+            self.menu.hover(event.pos)
+        elif self.stage.show_menu and event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            return self.take(self.menu.click(event.pos))
+        return None
+
+    def handle(self, event: pygame.event.Event) -> bool:
+        """Tab in the menu, and the wheel; True if the event was that."""
+        stage = self.stage
+        if stage.show_menu and not stage.show_help and self.menu.handle(event):
+            return True
+        if event.type != pygame.MOUSEWHEEL or not (stage.show_menu or stage.show_help):
+            return False
+        page = self.help if stage.show_help else self.menu
+        page.wheel(event.precise_y, round(60 * stage.renderer.scale))
+        return True
+
+    def draw(self) -> None:
+        """What is shown of them; nothing if neither is."""
+        stage = self.stage
+        if stage.show_menu:
+            self.menu.draw(stage.renderer.painter(), stage.panes.packing, stage.notices.latest)
+        if stage.show_help:
+            self.help.draw(stage.renderer.painter())
+
+    def _look_for_leftovers(self) -> None:
         """Offer the latest autosave in the menu, if there is one."""
         if not self._looked:
             self._looked = True
@@ -38,45 +108,41 @@ class Beginnings:
         self._tell()
 
     def _tell(self) -> None:
-        self.app.menu.resume = (lambda: left_words(self._left[0])) if self._left else None
+        self.menu.resume = (lambda: left_words(self._left[0])) if self._left else None
 
-    def take(self, choice: Choice) -> None:
-        """Do what was chosen; what cannot be done is said."""
+    def take(self, choice: Choice) -> Action | None:
+        """Do what was chosen; what cannot be done is said. An action is for ``Actions`` to carry out."""
         try:
             self._take(choice)
         except InputError as error:
-            self.app.toast(words.say(message(error)))
+            self.stage.toast(words.say(message(error)))
+        return ACTIONS.get(choice.what)
 
     def _take(self, choice: Choice) -> None:
-        app = self.app
         if choice.packing is not None:
-            app.run.packing = choice.packing
+            self.stage.panes.packing = choice.packing
         elif choice.scene is not None:
-            app.guide.close()
-            app.start(choice.scene)
+            self.guide.close()
+            self.stage.start(choice.scene)
         elif choice.tour is not None:
-            app.guide.start(choice.tour)
+            self.guide.start(choice.tour)
         elif choice.file is not None:
-            app.guide.close()
-            app.open(choice.file)
+            self.guide.close()
+            self.stage.open(choice.file)
         elif choice.what == START:
-            app.guide.start(START_SCENE)
+            self.guide.start(START_SCENE)
         elif choice.what in (TAKE_UP, DISCARD) and self._left:
             self._end_of_leftover(choice.what == TAKE_UP)
-        elif choice.what == KEYS:
-            app.act(Action.HELP)
-        elif choice.what in (LANGUAGE, THEME):
-            app.act(Action.LANGUAGE if choice.what == LANGUAGE else Action.THEME)
 
     def _end_of_leftover(self, wanted: bool) -> None:
         leftover = self._left.pop(0)
         self._tell()
         if wanted:
-            self.app.guide.close()
-            self.app.take_up(leftover)
+            self.guide.close()
+            self.stage.take_up(leftover)
         else:
             leftover.remove()
-            self.app.toast(words.DISCARDED)
+            self.stage.toast(words.DISCARDED)
 
 
 def left_words(leftover: autosave.Leftover) -> str:

@@ -15,18 +15,18 @@ from sandbox.draw.render import Renderer
 from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.session.frame import Frame
 from sandbox.window.solvers.kept_curves import Kept
-from sandbox.window.solvers.panes import Run
+from sandbox.window.solvers.panes import Panes
 from sandbox.window.solvers.solver_thread import Snapshot
 from sandbox.words import words
 
-Pane = tuple[Frame, Camera, pygame.Rect]
+Drawn = tuple[Frame, Camera, pygame.Rect]
 
 
 class Picture:
     """Draws what the solvers have published."""
 
-    def __init__(self, run: Run, renderer: Renderer) -> None:
-        self._run, self._renderer = run, renderer
+    def __init__(self, panes: Panes, renderer: Renderer) -> None:
+        self._panes, self._renderer = panes, renderer
         self._flashes = Flashes()
         self._lit = False
         self.events: tuple[str, ...] = ()  # kinds of those that were new in the latest picture
@@ -34,22 +34,22 @@ class Picture:
     @property
     def moving(self) -> bool:
         """Does the picture change by itself?"""
-        busy = any(seen.phase in ("building", "catching up") for seen in self._run.snapshots)
+        busy = any(seen.phase in ("building", "catching up") for seen in self._panes.snapshots)
         return busy or self._lit
 
     @property
     def serials(self) -> tuple[int, ...]:
         """Changes when there is something new to show."""
-        return tuple(seen.serial for seen in self._run.snapshots)
+        return tuple(seen.serial for seen in self._panes.snapshots)
 
     def forget(self) -> None:
         """Other runs begin."""
         self._flashes.forget()
 
-    def panes(self) -> tuple[Pane, ...]:
+    def panes(self) -> tuple[Drawn, ...]:
         """What is drawn where, from the left."""
         places = zip(
-            self._run.snapshots, self._renderer.cameras, self._renderer.bodies, strict=False
+            self._panes.snapshots, self._renderer.cameras, self._renderer.bodies, strict=False
         )
         return tuple(
             (seen.frame, camera, rect) for seen, camera, rect in places if seen.frame is not None
@@ -64,7 +64,7 @@ class Picture:
 
     def draw(self, *, hand: Hand, rate: str, notices: Sequence[str], now: float) -> None:
         """All panes; at least one of them must have a frame."""
-        snapshots = self._run.snapshots
+        snapshots = self._panes.snapshots
         frames = [seen.frame for seen in snapshots]
         lit = self._flashes.follow(frames, now)
         self._lit, self.events = bool(lit), self._flashes.new
@@ -74,10 +74,10 @@ class Picture:
             frames,
             hand=hand,
             rate=rate,
-            paused=self._run.paused,
+            paused=self._panes.paused,
             notices=notices,
             told=[_told(seen) for seen in snapshots] if several else (),
-            kept=[kept_curve(kept) for kept in self._run.curves.shown(first)],
+            kept=[kept_curve(kept) for kept in self._panes.curves.shown(first)],
             flashes=lit,
         )
 

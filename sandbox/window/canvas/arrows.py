@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from sandbox.draw.overlays import KNOB
 from sandbox.draw.painter import Painter
@@ -15,9 +14,7 @@ from sandbox.session.frame import HandleState
 from sandbox.window.focus import CANVAS
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.window.stage import Stage
 
 STEP = 0.25  # of the hand, a press [R]
 LEAD = 2.0  # the hand is never farther ahead of the body [R]
@@ -33,21 +30,21 @@ WAYS = {
 class Arrows(Silent):
     """Grab at the first press, a step of the hand each, release when the keyboard goes elsewhere."""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
         self._held = ""  # name of the handle
         self._target = (0.0, 0.0)
         self._pressed = -math.inf  # when [s]
 
     def stops(self) -> Sequence[str]:
         """The handles; the canvas itself where there are none."""
-        frame = self.app.run.snapshot.frame
+        frame = self.stage.panes.snapshot.frame
         handles = () if frame is None else frame.handles
         return [f"{CANVAS}/{handle.name}" for handle in handles] or [CANVAS]
 
     def handle_state(self) -> HandleState | None:
         """The handle that the arrow keys pull."""
-        frame, focus = self.app.run.snapshot.frame, self.app.focus
+        frame, focus = self.stage.panes.snapshot.frame, self.stage.focus
         if frame is None or not frame.handles or not focus.on_canvas:
             return None
         name = focus.name.partition("/")[2]
@@ -56,7 +53,7 @@ class Arrows(Silent):
     def act(self, action: Action) -> bool:
         """An arrow key, with the keyboard on the canvas."""
         handle = self.handle_state()
-        if action not in WAYS or handle is None or self.app.mouse.holding:
+        if action not in WAYS or handle is None or self.stage.mouse.holding:
             return False
         step = self._step(handle, *WAYS[action])
         if step == (0.0, 0.0):
@@ -64,17 +61,17 @@ class Arrows(Silent):
         now = time.perf_counter()
         if handle.name != self._held or now - self._pressed > PAUSE:
             if self._held and self._held != handle.name:
-                self.app.send(Release(self._held))
+                self.stage.send(Release(self._held))
             self._held = handle.name
             start = handle.target if handle.target is not None else (handle.x, handle.y)
             self._target = start
-            self.app.send(Grab(handle.name))
+            self.stage.send(Grab(handle.name))
         self._pressed = now
         x, y = self._target[0] + step[0] - handle.x, self._target[1] + step[1] - handle.y
         far = max(math.hypot(x, y) / LEAD, 1.0)
         self._target = (handle.x + x / far, handle.y + y / far)
-        self.app.send(Move(handle.name, *self._target))
-        self.app.has_begun()
+        self.stage.send(Move(handle.name, *self._target))
+        self.stage.has_begun()
         return True
 
     def _step(self, handle: HandleState, x: float, y: float) -> tuple[float, float]:
@@ -88,18 +85,18 @@ class Arrows(Silent):
         """Let go when the keyboard has gone elsewhere, or the mouse takes over."""
         del now
         handle = self.handle_state()
-        if self._held and (handle is None or handle.name != self._held or self.app.mouse.holding):
-            if not self.app.mouse.holding:
-                self.app.send(Release(self._held))
+        if self._held and (handle is None or handle.name != self._held or self.stage.mouse.holding):
+            if not self.stage.mouse.holding:
+                self.stage.send(Release(self._held))
             self._held = ""
         return False
 
     def draw(self, painter: Painter) -> None:
         """The ring round the canvas and the handle, when Tab has brought the keyboard here."""
-        if not self.app.focus.ring.startswith(CANVAS):
+        if not self.stage.focus.ring.startswith(CANVAS):
             return
         handle = self.handle_state()
-        for _, camera, rect in self.app.panes():
+        for _, camera, rect in self.stage.picture.panes():
             draw_ring(painter, rect.inflate(-round(4 * painter.scale), -round(4 * painter.scale)))
             if handle is not None:
                 x, y = camera.to_screen(handle.x, handle.y)

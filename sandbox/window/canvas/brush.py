@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import pygame
 
@@ -21,10 +20,8 @@ from sandbox.window.hand import REACH, handle_at
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.sections import Value
+from sandbox.window.stage import Stage
 from sandbox.words import words
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 Point = tuple[float, float]
 
@@ -42,8 +39,8 @@ class Brush(Silent):
 
     name = "brush"
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
         self.on = False
         self.tool = PLACE
         self.kind = "regular"
@@ -52,6 +49,10 @@ class Brush(Silent):
         self._pane = 0
         self._stroke: list[Point] = []  # places of the stroke under way, or points of the wall
         self._drawing = False
+        stage.at_new_scene(self._put_away)
+
+    def _put_away(self) -> None:
+        self.on = False
 
     # -- what a person does --
 
@@ -60,7 +61,7 @@ class Brush(Silent):
         if action is Action.BRUSH:
             self.take(not self.on)
             return True
-        if not self.on or not self.app.focus.on_canvas:
+        if not self.on or not self.stage.focus.on_canvas:
             return False
         if action in WAYS:
             x, y = self._at or self._middle()
@@ -77,10 +78,10 @@ class Brush(Silent):
         self.on = on
         self._stroke.clear()
         self._drawing = False
-        self.app.toast(words.BRUSH_ON if on else words.BRUSH_OFF)
+        self.stage.toast(words.BRUSH_ON if on else words.BRUSH_OFF)
 
     def _middle(self) -> Point:
-        frame = self.app.panes()[0][0]
+        frame = self.stage.picture.panes()[0][0]
         x0, y0, x1, y1 = frame.bounds
         return 0.5 * (x0 + x1), 0.5 * (y0 + y1)
 
@@ -92,7 +93,7 @@ class Brush(Silent):
         elif not self._stroke:
             self._stroke = [at]
         else:
-            self.app.send(DrawWall((self._stroke[0], at)))
+            self.stage.send(DrawWall((self._stroke[0], at)))
             self._stroke.clear()
 
     def handle(self, event: pygame.event.Event) -> bool:
@@ -100,7 +101,7 @@ class Brush(Silent):
         if not self.on:
             return False
         if event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE:
-            if self.app.focus.on_canvas and not self.app.focus.shown:
+            if self.stage.focus.on_canvas and not self.stage.focus.shown:
                 self.take(False)
                 return True
             return False
@@ -114,14 +115,14 @@ class Brush(Silent):
         return False
 
     def _motion(self, pos: tuple[int, int]) -> bool:
-        if self.app.mouse.holding:
+        if self.stage.mouse.holding:
             return False
         found = self._camera_at(pos)
         if found is None:
             self._at = self._at if self._drawing else None
             return self._drawing
         self._at = found.to_world(*pos)
-        self.app.redraw(True)
+        self.stage.redraw(True)
         if self._drawing:
             self._drag(self._at)
         return self._drawing
@@ -130,11 +131,11 @@ class Brush(Silent):
         camera = self._camera_at(pos)
         if camera is None:
             return False
-        frame = self.app.panes()[self._pane][0]
-        reach = REACH * self.app.renderer.scale
+        frame = self.stage.picture.panes()[self._pane][0]
+        reach = REACH * self.stage.renderer.scale
         if handle_at(pos, frame, camera, reach) is not None and self.tool != DRAW_WALL:
             return False  # the hand comes first
-        self.app.focus.leave()
+        self.stage.focus.leave()
         self._at = camera.to_world(*pos)
         self._drawing, self._stroke = True, [self._at]
         if self.tool != DRAW_WALL:
@@ -153,7 +154,7 @@ class Brush(Silent):
         if self.tool == DRAW_WALL:
             if self._at is not None and self._at != self._stroke[-1]:
                 self._stroke.append(self._at)
-            self.app.send(DrawWall(tuple(self._stroke)))
+            self.stage.send(DrawWall(tuple(self._stroke)))
         self._drawing = False
         self._stroke.clear()
 
@@ -161,16 +162,16 @@ class Brush(Silent):
         x, y = at
         match self.tool:
             case "place":
-                self.app.send(Place(x, y, self.kind))
+                self.stage.send(Place(x, y, self.kind))
             case "erase":
-                self.app.send(Erase(x, y, self.radius))
+                self.stage.send(Erase(x, y, self.radius))
             case "retype":
-                self.app.send(Retype(x, y, self.radius, self.kind))
+                self.stage.send(Retype(x, y, self.radius, self.kind))
             case "erase_wall":
-                self.app.send(EraseWall(x, y))
+                self.stage.send(EraseWall(x, y))
 
     def _camera_at(self, pos: tuple[int, int]) -> Camera | None:
-        for index, (_, camera, rect) in enumerate(self.app.panes()):
+        for index, (_, camera, rect) in enumerate(self.stage.picture.panes()):
             if rect.collidepoint(pos):
                 self._pane = index
                 return camera
@@ -187,7 +188,7 @@ class Brush(Silent):
         if self.tool in (DRAW_WALL, ERASE_WALL):
             radius = 0.3
         line = [*self._stroke, self._at] if self.tool == DRAW_WALL and self._stroke else []
-        for _, camera, rect in self.app.panes():
+        for _, camera, rect in self.stage.picture.panes():
             x, y = camera.to_screen(*self._at)
             size = max(radius * camera.scale, 4.0 * painter.scale)
             width = 2.5 * painter.scale
@@ -200,7 +201,7 @@ class Brush(Silent):
 
     def cursor(self) -> int | None:
         """A cross over a canvas."""
-        inside = self.on and self._at is not None and self.app.mouse.hover is None
+        inside = self.on and self._at is not None and self.stage.mouse.hover is None
         return pygame.SYSTEM_CURSOR_CROSSHAIR if inside else None
 
     # -- the section of the panel --

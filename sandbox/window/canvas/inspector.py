@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pygame
@@ -21,10 +20,8 @@ from sandbox.window.hand import REACH, handle_at
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.sections import Value
+from sandbox.window.stage import Stage
 from sandbox.words import words
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 STILL = 6.0  # a press that moves less than this is a click, at scale 1 [px]
 
@@ -34,8 +31,8 @@ class Inspector(Silent):
 
     name = "grain"
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
         self.label: int | None = None
         self.pane = 0
         self._scene = ""
@@ -45,7 +42,7 @@ class Inspector(Silent):
     @property
     def frame(self) -> Frame | None:
         """The packing that the grain belongs to."""
-        panes = self.app.panes()
+        panes = self.stage.picture.panes()
         return panes[self.pane][0] if self.pane < len(panes) else None
 
     @property
@@ -63,7 +60,7 @@ class Inspector(Silent):
             self._seen.clear()
         else:
             self._seen.append(label)
-        self.app.redraw(True)
+        self.stage.redraw(True)
 
     def next_in_contact(self) -> None:
         """Along the strongest contact to a grain not yet looked at, else to the one looked at longest ago.
@@ -111,7 +108,7 @@ class Inspector(Silent):
     def handle(self, event: pygame.event.Event) -> bool:
         """A click on a grain, Escape."""
         if event.type == pygame.KEYDOWN:
-            on_canvas = self.app.focus.on_canvas and not self.app.focus.shown
+            on_canvas = self.stage.focus.on_canvas and not self.stage.focus.shown
             if event.key == pygame.K_ESCAPE and self.label is not None and on_canvas:
                 self.look(None)
                 return True
@@ -120,18 +117,18 @@ class Inspector(Silent):
         elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
             press, self._press = self._press, None
             still = press is not None and math.dist(press, event.pos) <= (
-                STILL * self.app.renderer.scale
+                STILL * self.stage.renderer.scale
             )
-            if still and not self.app.mouse.holding:
+            if still and not self.stage.mouse.holding:
                 self._click(event.pos)
         return False
 
     def _click(self, pos: tuple[int, int]) -> None:
-        for index, (frame, camera, rect) in enumerate(self.app.panes()):
+        for index, (frame, camera, rect) in enumerate(self.stage.picture.panes()):
             if not rect.collidepoint(pos):
                 continue
-            if handle_at(pos, frame, camera, REACH * self.app.renderer.scale) is None:
-                self.app.focus.leave()
+            if handle_at(pos, frame, camera, REACH * self.stage.renderer.scale) is None:
+                self.stage.focus.leave()
                 self.look(grain_at(frame, *camera.to_world(*pos)), index)
 
     def tick(self, now: float) -> bool:
@@ -150,7 +147,7 @@ class Inspector(Silent):
     def draw(self, painter: Painter) -> None:
         """A ring round the grain, at all its images in a periodic cell."""
         found = self.inspection
-        panes = self.app.panes()
+        panes = self.stage.picture.panes()
         if found is None or self.pane >= len(panes):
             return
         frame, camera, rect = panes[self.pane]

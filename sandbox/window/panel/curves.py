@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from sandbox.draw.theme import packing_colour
 from sandbox.draw.widgets.controls import Button, Control, Row, TextField
-from sandbox.window.sections import AppSection, Value
+from sandbox.window.sections import StageSection, Value
 from sandbox.words import words
 
 
-class CurvesSection(AppSection):
+class CurvesSection(StageSection):
     """A row for every curve that is kept of this scene; the section is there while there is one."""
 
     name = "curves"
@@ -18,7 +18,7 @@ class CurvesSection(AppSection):
     @property
     def there(self) -> bool:
         """While there is a curve."""
-        return bool(self.app.run.curves.of(self.app.run.scene))
+        return bool(self.stage.panes.curves.of(self.stage.panes.scene))
 
     def controls(self) -> Sequence[Control]:
         """Name, eye, and a cross."""
@@ -41,14 +41,14 @@ class CurvesSection(AppSection):
                 ),
                 (5.0, 1.0, 1.0),
             )
-            for kept in self.app.run.curves.of(self.app.run.scene)
+            for kept in self.stage.panes.curves.of(self.stage.panes.scene)
         ]
         return [*rows, Button("curves/clear", words.CURVES_CLEAR, help=words.CURVES_CLEAR_HELP)]
 
     def use(self, name: str, value: Value, done: bool) -> None:
         """Do it to that curve."""
         del done
-        curves = self.app.run.curves
+        curves = self.stage.panes.curves
         _, what, *key = name.split("/")
         match what:
             case "name":
@@ -58,4 +58,4 @@ class CurvesSection(AppSection):
             case "delete":
                 curves.delete(int(key[0]))
             case "clear":
-                curves.clear(self.app.run.scene)
+                curves.clear(self.stage.panes.scene)

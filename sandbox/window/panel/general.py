@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from core.errors import InputError
 from sandbox.draw.theme import packing_colour
 from sandbox.draw.views import VIEWS
 from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Row, Stepper
+from sandbox.window.actions import Actions
+from sandbox.window.canvas.brush import Brush
+from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
 from sandbox.window.sections import Value
+from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes import registry
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 MOST_SEED = 2**31 - 1
 ACTIONS = {
@@ -41,48 +41,53 @@ class GeneralSection:
     name = "general"
     title = ""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage, actions: Actions, brush: Brush, guide: Guide) -> None:
+        self.stage, self.actions, self.brush, self.guide = stage, actions, brush, guide
 
     @property
     def there(self) -> bool:
         """Always, while something runs."""
-        return self.app.run.snapshot.frame is not None
+        return self.stage.panes.snapshot.frame is not None
 
     def controls(self) -> Sequence[Control]:
         """Choices first, then buttons."""
-        frame = self.app.run.snapshot.frame
+        frame = self.stage.panes.snapshot.frame
         if frame is None:
             return ()
         known = frame.scene in registry.names()
         packings = registry.get(frame.scene).packings if known else (frame.packing,)
         views = tuple(Option(name, words.VIEWS[name]) for name in VIEWS)
         seed = Stepper(
-            "general/seed", words.PANEL_SEED, self.app.run.seed, 0, MOST_SEED, words.PANEL_SEED_HELP
+            "general/seed",
+            words.PANEL_SEED,
+            self.stage.panes.seed,
+            0,
+            MOST_SEED,
+            words.PANEL_SEED_HELP,
         )
         controls: list[Control] = [
             Row(
                 (
                     self._button("menu"),
-                    self._button("tour", on=self.app.guide.on),
+                    self._button("tour", on=self.guide.on),
                     self._button("help"),
                     self._button("fold", sign="›"),
                 ),
                 (1.4, 1.2, 1.4, 0.8),
             )
         ]
-        if len(packings) > 1 and not self.app.run.comparing:
+        if len(packings) > 1 and not self.stage.panes.comparing:
             controls.append(
                 Choice(
                     "general/packing",
                     words.PANEL_PACKING,
                     tuple(Option(p, words.PACKINGS.get(p, p), packing_colour(p)) for p in packings),
-                    self.app.run.packing,
+                    self.stage.panes.packing,
                     words.PANEL_PACKING_HELP,
                 )
             )
         controls += [
-            Choice("general/view", words.PANEL_VIEW, views, self.app.renderer.view.name),
+            Choice("general/view", words.PANEL_VIEW, views, self.stage.renderer.view.name),
             Row((seed, self._button("new")), (3.0, 1.4)),
             Row(
                 (
@@ -94,11 +99,11 @@ class GeneralSection:
             Row(
                 (
                     self._button("drive", on=frame.protocol),
-                    self._button("compare", on=self.app.run.comparing),
-                    self._button("brush", on=self.app.brush.on),
+                    self._button("compare", on=self.stage.panes.comparing),
+                    self._button("brush", on=self.brush.on),
                 )
             ),
-            Row((self._button("record", on=self.app.recorder.recording), self._button("export"))),
+            Row((self._button("record", on=self.stage.recorder.recording), self._button("export"))),
         ]
         return controls
 
@@ -113,13 +118,13 @@ class GeneralSection:
         del done
         what = name.partition("/")[2]
         if what == "packing":
-            self.app.actions.change_packing(str(value))
+            self.actions.change_packing(str(value))
         elif what == "view":
-            self.app.actions.change_view(str(value))
+            self.actions.change_view(str(value))
         elif what == "seed":
             try:
-                self.app.actions.change_seed(int(str(value).strip()))
+                self.actions.change_seed(int(str(value).strip()))
             except (ValueError, InputError):
-                self.app.toast(words.SEED_WRONG)
+                self.stage.toast(words.SEED_WRONG)
         else:
-            self.app.act(ACTIONS[what])
+            self.actions.act(ACTIONS[what])

@@ -5,21 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Switch
+from sandbox.window.actions import Actions
 from sandbox.window.keys import Action
-from sandbox.window.sections import AppSection, Value
+from sandbox.window.sections import StageSection, Value
+from sandbox.window.stage import Stage
 from sandbox.words import language, words
 
 SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
 
 
-class LooksSection(AppSection):
+class LooksSection(StageSection):
     """Force chains, theme, size of text, language, sound."""
 
     name = "looks"
 
+    def __init__(self, stage: Stage, actions: Actions) -> None:
+        super().__init__(stage)
+        self.actions = actions
+
     def controls(self) -> Sequence[Control]:
         """Switches and choices."""
-        renderer = self.app.renderer
+        renderer = self.stage.renderer
         themes = tuple(Option(name, words.THEMES[name]) for name in ("dark", "light"))
         sizes = tuple(
             Option(size, size.replace(".", words.decimal_sign()) + " ×") for size in SCALES
@@ -33,7 +39,9 @@ class LooksSection(AppSection):
             Choice("looks/theme", words.LOOK_THEME, themes, renderer.theme.name),
             Choice("looks/size", words.LOOK_SIZE, sizes, f"{renderer.scale:g}"),
             Choice("looks/language", words.LOOK_LANGUAGE, spoken, language.present()),
-            Switch("looks/sound", words.LOOK_SOUND, self.app.sound.on, help=words.LOOK_SOUND_HELP),
+            Switch(
+                "looks/sound", words.LOOK_SOUND, self.stage.sound.on, help=words.LOOK_SOUND_HELP
+            ),
             Button("looks/picture", words.LOOK_PICTURE, help=words.LOOK_PICTURE_HELP),
         ]
 
@@ -42,14 +50,14 @@ class LooksSection(AppSection):
         del done
         match name.partition("/")[2]:
             case "chains":
-                self.app.act(Action.CHAINS)
+                self.actions.act(Action.CHAINS)
             case "sound":
-                self.app.act(Action.SOUND)
+                self.actions.act(Action.SOUND)
             case "picture":
-                self.app.act(Action.SCREENSHOT)
+                self.actions.act(Action.SCREENSHOT)
             case "theme":
-                self.app.renderer.set_theme(str(value))
+                self.stage.renderer.set_theme(str(value))
             case "size":
-                self.app.actions.rescale(float(str(value)))
+                self.actions.rescale(float(str(value)))
             case "language":
-                self.app.actions.speak(str(value))
+                self.actions.speak(str(value))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import pygame
 
@@ -27,15 +26,14 @@ from sandbox.draw.widgets.controls import (
 )
 from sandbox.draw.widgets.look import Attention
 from sandbox.draw.widgets.panel_frame import draw_tab, foot_height, panel_picture
+from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
 from sandbox.window.panel.drawer import Drawer
 from sandbox.window.panel.line_edit import Edit
 from sandbox.window.parts import Silent
 from sandbox.window.press import Press, keyed, pressed
 from sandbox.window.sections import Section, Value
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.window.stage import Stage
 
 DOUBLE = 0.35  # two clicks within this are one double click [s]
 PAN = 8.0  # a press that moves this far scrolls, at scale 1 [px]
@@ -53,11 +51,11 @@ class Draft:
 class Panel(Silent):
     """All sections, scrolled; what is hovered over, dragged and typed."""
 
-    def __init__(self, app: App, folded: set[str]) -> None:
-        self.app = app
+    def __init__(self, stage: Stage, guide: Guide, folded: set[str]) -> None:
+        self.stage = stage
         self.sections: list[Section] = []
         self.folded = folded  # names of sections
-        self.drawer = Drawer(app)
+        self.drawer = Drawer(stage, guide)
         self.scroll = 0
         self.draft: Draft | None = None
         self.edit: Edit | None = None
@@ -80,8 +78,8 @@ class Panel(Silent):
     def fold(self) -> None:
         """Hide it or show it."""
         self.drawer.switch()
-        if not self.drawer.shown and not self.app.focus.on_canvas:
-            self.app.focus.leave()
+        if not self.drawer.shown and not self.stage.focus.on_canvas:
+            self.stage.focus.leave()
 
     def stops(self) -> Sequence[str]:
         """What the keyboard can go to."""
@@ -95,7 +93,7 @@ class Panel(Silent):
     @property
     def _view(self) -> int:
         """Height of what shows of the controls [px]."""
-        return self.rect.height - foot_height(self.rect.height, self.app.renderer.type)
+        return self.rect.height - foot_height(self.rect.height, self.stage.renderer.type)
 
     # -- once a picture --
 
@@ -105,10 +103,10 @@ class Panel(Silent):
         if not self.drawer.shown:
             self._arranged, self._places = None, Places((), 0)
             return False
-        before, wanted = self._places, (self._controls(), self.app.renderer.type, self.rect.width)
+        before, wanted = self._places, (self._controls(), self.stage.renderer.type, self.rect.width)
         if wanted != self._arranged:  # to find the places takes a millisecond
             self._arranged, self._places = wanted, arranged(*wanted)
-        focus = self.app.focus
+        focus = self.stage.focus
         if self.draft is not None and not self.draft.by_mouse and focus.name != self.draft.name:
             self._finish_draft()
         if self.edit is not None and focus.name != self.edit.name:
@@ -116,7 +114,7 @@ class Panel(Silent):
         if focus.ring != self._followed:
             self._followed = focus.ring
             if focus.shown:
-                room = round(TARGET * self.app.renderer.scale)
+                room = round(TARGET * self.stage.renderer.scale)
                 self.scroll = self._places.scroll_to(focus.name, self.scroll, self._view, room)
         self.scroll = max(0, min(self.scroll, self._places.height - self._view))
         return self._places is not before
@@ -155,7 +153,7 @@ class Panel(Silent):
             return self._key(event)
         if event.type == pygame.MOUSEMOTION:
             self._pointer = event.pos
-        if self.app.mouse.holding:  # the hand goes on over the panel
+        if self.stage.mouse.holding:  # the hand goes on over the panel
             return False
         if not self.drawer.shown:
             return self._on_tab(event)
@@ -176,7 +174,7 @@ class Panel(Silent):
             self._up(event.pos)
             return True
         if event.type == pygame.MOUSEWHEEL and inside:
-            self._scroll_by(-event.precise_y * 60.0 * self.app.renderer.scale)
+            self._scroll_by(-event.precise_y * 60.0 * self.stage.renderer.scale)
             return True
         return False
 
@@ -220,16 +218,16 @@ class Panel(Silent):
         self._press = Press(pos, self.scroll, place)
         if place is None:
             return
-        self.app.focus.go(name, False)
+        self.stage.focus.go(name, False)
         control = place.control
         if not isinstance(control, Slider):
             return
-        parts = parts_of(control, place.rect, self.app.renderer.type)
+        parts = parts_of(control, place.rect, self.stage.renderer.type)
         x, y = self._unscrolled(pos)
         if double and not parts.box.collidepoint(x, y):
             self._press = None
             self._use(name, control.default, True)
-        elif parts.track.inflate(2 * round(PAD * self.app.renderer.scale), 0).collidepoint(x, y):
+        elif parts.track.inflate(2 * round(PAD * self.stage.renderer.scale), 0).collidepoint(x, y):
             self._press.slides = True
             self.draft = Draft(name, control.value, by_mouse=True)
             self._slide(pos)
@@ -240,11 +238,11 @@ class Panel(Silent):
             place = self._at(pos)
             hover = "" if place is None else place.control.name
             changed, self._hover = hover != self._hover, hover
-            self.app.redraw(changed)
+            self.stage.redraw(changed)
             return False
         if press.slides:
             self._slide(pos)
-        elif press.pans or abs(pos[1] - press.start[1]) > PAN * self.app.renderer.scale:
+        elif press.pans or abs(pos[1] - press.start[1]) > PAN * self.stage.renderer.scale:
             press.pans = True
             self.scroll = press.scroll
             self._scroll_by(press.start[1] - pos[1])
@@ -254,7 +252,7 @@ class Panel(Silent):
         place = self._places.named(self.draft.name) if self.draft is not None else None
         if self.draft is None or place is None or not isinstance(place.control, Slider):
             return
-        parts = parts_of(place.control, place.rect, self.app.renderer.type)
+        parts = parts_of(place.control, place.rect, self.stage.renderer.type)
         value = slid_to(place.control, parts, self._unscrolled(pos)[0])
         if value != self.draft.value:
             self.draft.value = value
@@ -278,7 +276,7 @@ class Panel(Silent):
         if isinstance(control, Heading):
             self._toggle(control)
             return
-        parts = parts_of(control, place.rect, self.app.renderer.type)
+        parts = parts_of(control, place.rect, self.stage.renderer.type)
         if isinstance(control, (Slider, Stepper, TextField)) and parts.box.collidepoint(at):
             if self.edit is None:
                 self._begin_edit(control)
@@ -292,7 +290,7 @@ class Panel(Silent):
     def _key(self, event: pygame.event.Event) -> bool:
         if self.edit is not None:
             return self._key_of_edit(event)
-        place = self._places.named(self.app.focus.name) if self.drawer.shown else None
+        place = self._places.named(self.stage.focus.name) if self.drawer.shown else None
         if place is None:
             return False
         control = place.control
@@ -307,7 +305,7 @@ class Panel(Silent):
         asked = keyed(control, event)
         if asked is None:
             return False
-        self.app.focus.go(control.name, True)
+        self.stage.focus.go(control.name, True)
         if isinstance(control, Heading):
             if control.open != asked.value:
                 self._toggle(control)
@@ -367,7 +365,7 @@ class Panel(Silent):
         for section in self.sections:
             if section.name == owner:
                 section.use(name, value, done)
-        self.app.redraw(True)
+        self.stage.redraw(True)
 
     # -- drawing --
 
@@ -377,7 +375,7 @@ class Panel(Silent):
         if not self.drawer.shown:
             draw_tab(painter, self.drawer.tab)
             return
-        focus = self.app.focus
+        focus = self.stage.focus
         edit = self.edit
         attention = Attention(
             focus.ring,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from core.errors import InputError
 from sandbox.draw.widgets.controls import Control, Slider, Switch
@@ -12,13 +11,11 @@ from sandbox.draw.widgets.scale import shown, typed
 from sandbox.session.commands import Change
 from sandbox.session.frame import Frame
 from sandbox.window.parts import Silent
+from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes import registry
 from scenes.parameter import Parameter, Value
 from scenes.text import message
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 SOLVER = ("step", "tolerance", "max_iterations")
 GRAINS = (
@@ -50,8 +47,8 @@ class _Wish:
 class Settings(Silent):
     """What is set and what is on its way to the solver: at most one change of a parameter a picture."""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
         self._wishes: dict[str, _Wish] = {}
         self._scene = ""
         self._refusals = 0
@@ -59,7 +56,7 @@ class Settings(Silent):
     @property
     def frame(self) -> Frame | None:
         """What is shown now."""
-        return self.app.run.snapshot.frame
+        return self.stage.panes.snapshot.frame
 
     def parameters(self) -> Sequence[Parameter]:
         """Those of the scene that is shown, in the order in which they matter."""
@@ -88,12 +85,12 @@ class Settings(Silent):
                     round(value) if isinstance(parameter.default, int) else value
                 )
         except InputError as error:
-            self.app.toast(words.say(message(error)))
+            self.stage.toast(words.say(message(error)))
             return
         if (parameter.live or done) and wanted != self.value(parameter):
             self._wishes[parameter.name] = _Wish(wanted)
             if not parameter.live:
-                self.app.forget_picture()
+                self.stage.forget_picture()
 
     def tick(self, now: float) -> bool:
         """Send what is new, and forget what has come true or was refused."""
@@ -105,16 +102,16 @@ class Settings(Silent):
             self._wishes.clear()
         if frame.refusals != self._refusals:
             if frame.refusals > self._refusals:
-                self.app.toast(words.say(frame.refusal))
+                self.stage.toast(words.say(frame.refusal))
                 self._wishes = {n: wish for n, wish in self._wishes.items() if wish.sent is None}
             self._refusals = frame.refusals
-        building = self.app.run.snapshot.phase == "building"
+        building = self.stage.panes.snapshot.phase == "building"
         by_name = {parameter.name: parameter for parameter in self.parameters()}
         changed = False
         for name, wish in list(self._wishes.items()):
             if wish.sent is None:
                 wish.sent = now
-                self.app.send(Change(name, wish.value))
+                self.stage.send(Change(name, wish.value))
             elif name not in by_name or self._set(frame, by_name[name]) == wish.value:
                 del self._wishes[name]
                 changed = True

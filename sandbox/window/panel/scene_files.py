@@ -5,29 +5,28 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from core.errors import InputError
 from sandbox.draw.widgets.controls import Button, Control, Note, Row, TextField
 from sandbox.files.scenes_here import SUFFIX, scenes_here
-from sandbox.window.sections import AppSection, Value
+from sandbox.window.actions import Actions
+from sandbox.window.sections import StageSection, Value
+from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes.text import message
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
 
 STALE = 3.0  # the folder is looked at again after this [s]
 OPEN = "files/open/"
 
 
-class FilesSection(AppSection):
+class FilesSection(StageSection):
     """A name, a button to save, and the files of the folder to open."""
 
     name = "files"
 
-    def __init__(self, app: App) -> None:
-        super().__init__(app)
+    def __init__(self, stage: Stage, actions: Actions) -> None:
+        super().__init__(stage)
+        self.actions = actions
         self.stem = ""  # typed; empty: after the scene
         self._found: tuple[Path, ...] = ()
         self._looked = -STALE
@@ -49,7 +48,7 @@ class FilesSection(AppSection):
         if name == "files/name":
             self.stem = Path(str(value).strip()).name.removesuffix(SUFFIX)
         elif name == "files/save":
-            self.app.actions.save(self._stem())
+            self.actions.save(self._stem())
             self._looked = -STALE
         else:
             self._open(name.removeprefix(OPEN))
@@ -58,12 +57,12 @@ class FilesSection(AppSection):
         for path in self._found:
             if path.name == name:
                 try:
-                    self.app.open(path)
+                    self.stage.open(path)
                 except InputError as error:
-                    self.app.toast(words.say(message(error)))
+                    self.stage.toast(words.say(message(error)))
 
     def _stem(self) -> str:
-        return self.stem or f"my-{self.app.run.scene.replace('_', '-')}"
+        return self.stem or f"my-{self.stage.panes.scene.replace('_', '-')}"
 
     def _files(self) -> Sequence[Path]:
         """The scene files in the current folder, the newest first."""

@@ -40,7 +40,7 @@ class Pane:
     solver: SolverThread
 
 
-class Run:
+class Panes:
     """At most one scene at a time, in one pane or several. Nothing here waits for a solver, except ``close``."""
 
     def __init__(
