@@ -21,6 +21,7 @@ from sandbox.session.commands import (
 )
 from sandbox.session.frame import Frame
 from sandbox.session.log import Log
+from sandbox.window.solvers.conductor import Conductor
 from sandbox.window.solvers.solver_thread import SolverThread
 from tests.draw.frames import intruder_frame
 
@@ -172,7 +173,7 @@ def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
 
 def started(session: FakeSession, paused: bool = False) -> SolverThread:
     """A thread that has built the session."""
-    solver = SolverThread(session, paused=paused)
+    solver = SolverThread(session, Conductor(paused=paused))
     solver.start()
     wait_until(lambda: solver.snapshot.phase == "running")
     return solver

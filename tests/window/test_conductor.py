@@ -28,7 +28,7 @@ class Diary(FakeSession):
 
 def together(conductor: Conductor, *paces: float) -> tuple[list[Diary], list[SolverThread]]:
     sessions = [Diary(pace) for pace in paces]
-    solvers = [SolverThread(session, conductor=conductor) for session in sessions]
+    solvers = [SolverThread(session, conductor) for session in sessions]
     for solver in solvers:
         solver.start()
     return sessions, solvers

@@ -218,7 +218,7 @@ class Panes:
         return self.exists
 
     def _pane(self, packing: str, session: Session) -> Pane:
-        solver = SolverThread(session, conductor=self._conductor)
+        solver = SolverThread(session, self._conductor)
         solver.start()
         return Pane(packing, session, solver)
 

@@ -80,12 +80,10 @@ class _Stopped(Exception):
 class SolverThread:
     """Runs a session until stopped, alone or in step with others."""
 
-    def __init__(
-        self, session: SessionLike, *, paused: bool = False, conductor: Conductor | None = None
-    ) -> None:
+    def __init__(self, session: SessionLike, conductor: Conductor) -> None:
         self._session = session
-        self._conductor = Conductor(paused=paused) if conductor is None else conductor
-        self._member = self._conductor.join()
+        self.conductor = conductor
+        self._member = self.conductor.join()
         self._built = False
         self._cancel = False
         self._snapshot = Snapshot("building")
@@ -105,23 +103,6 @@ class SolverThread:
         """The latest state."""
         return self._snapshot
 
-    @property
-    def paused(self) -> bool:
-        """Is the solver held?"""
-        return self._conductor.paused
-
-    def submit(self, command: Command) -> None:
-        """Send a command, to those in step with this one too."""
-        self._conductor.submit(command)
-
-    def pause(self, on: bool) -> None:
-        """Hold after the increment at work, or go on."""
-        self._conductor.pause(on)
-
-    def step(self) -> None:
-        """Hold, but do one more increment."""
-        self._conductor.step()
-
     def cancel(self) -> None:
         """Break a build off: the first ends the thread, a later one leaves everything as it was."""
         self._cancel = True
@@ -129,11 +110,11 @@ class SolverThread:
     def stop(self, timeout: float = 5.0) -> bool:
         """End the thread; True when it has ended, after which its session may be used."""
         self._patience = 0.8 * timeout
-        self._conductor.stop(self._member)
+        self.conductor.stop(self._member)
         if self._thread.is_alive():
             self._thread.join(timeout)
         else:
-            self._conductor.leave(self._member)
+            self.conductor.leave(self._member)
         return not self._thread.is_alive()
 
     # What the thread does.
@@ -156,7 +137,7 @@ class SolverThread:
         else:
             self._publish("stopped")
         finally:
-            self._conductor.leave(self._member)
+            self.conductor.leave(self._member)
 
     def _build(self) -> None:
         self._session.build(self._report)
@@ -194,7 +175,7 @@ class SolverThread:
     def _next_turn(self, advanced: bool) -> Turn | None:
         """Sleep until there is something to do; None when it is time to end."""
         wants = not self._session.idle
-        return self._conductor.next_turn(self._member, wants=wants, advanced=advanced)
+        return self.conductor.next_turn(self._member, wants=wants, advanced=advanced)
 
     def _work(self, turn: Turn) -> bool:
         """Deliver the commands and relax one increment, if there is one; True if it was finished."""
@@ -212,7 +193,7 @@ class SolverThread:
 
     def _advance(self) -> bool:
         """A slice of work, when a core is free for it."""
-        with self._conductor.core:
+        with self.conductor.core:
             return self._session.advance(SLICE)
 
     def _finish(self) -> None:
