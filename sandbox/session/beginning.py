@@ -18,7 +18,7 @@ from core.packing import Packing
 from core.rigid import Point, RigidBody
 from sandbox.session.editing import drawn_wall, poisson_ratio
 from scenes.parameter import Value
-from scenes.scene import Setup, Values
+from scenes.scene import Scene, Setup, Values
 
 Placement = tuple[float, float, float]
 
@@ -55,6 +55,17 @@ class SceneFile:
         grains = self.grains.copy()
         grains.poisson_ratio = nu[np.diff(steps).astype(np.int64)]
         return replace(self, packing=kind, grains=grains, text=b"", data=b"")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be built: a scene with its settings, or what was made of one."""
+
+    scene: Scene
+    packing: str
+    seed: int
+    settings: Values
+    file: SceneFile | None = None
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import get_args
 from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
 from core.warmup import compile_kernels
-from sandbox.session.beginning import Made, SceneFile, put_into
+from sandbox.session.beginning import Asked, Made, SceneFile, put_into
 from sandbox.session.commands import (
     Change,
     Command,
@@ -37,7 +37,7 @@ from sandbox.session.log import Log
 from sandbox.session.run import Run
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
-from scenes.parameter import shown
+from scenes.parameter import check_seed
 from scenes.scene import Check, Ingredients, Scene, Setup, Values
 from scenes.text import message
 
@@ -60,15 +60,9 @@ class Session:
         settings: Mapping[str, object] | None = None,
     ) -> None:
         """Checks the request and is quick. Raises InputError."""
-        self.scene: Scene = registry.get(scene)
-        self.packing = self.scene.check_packing(packing)
-        self.seed = check_seed(seed)
-        self.settings: Values = self.scene.settings(settings)
-        self._file: SceneFile | None = (
-            None  # what the scene is built from, if not from its settings
-        )
-        self._first = (scene, self.packing, self.seed, dict(self.settings))
-        self._first_file: SceneFile | None = None
+        known = registry.get(scene)
+        kind, seed = known.check_packing(packing), check_seed(seed)
+        self._first = Asked(known, kind, seed, known.settings(settings))
         self._pending: deque[Command] = deque()
         self._lock = threading.Lock()
         self._commands: list[tuple[int, Command]] = []
@@ -83,39 +77,30 @@ class Session:
     def from_file(cls, file: SceneFile) -> Session:
         """A session that begins where a scene file was written."""
         session = cls(file.scene, file.packing, file.seed, file.settings)
-        session._file = session._first_file = file
+        session._first = replace(session._first, file=file)
         return session
 
     def build(self, progress: Progress | None = None) -> None:
         """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
         self._progress = progress
-        report = progress or _silent
-        self._compile(self.scene.ingredients(self.settings))
+        self._build(self._first)
+
+    def _build(self, asked: Asked) -> None:
+        report = self._progress or _silent
+        self._compile(asked.scene.ingredients(asked.settings))
         report(PACKING, COMPILE_SHARE)
-        setup = self.scene.build(
-            self.settings,
-            self.packing,
-            self.seed,
+        setup = asked.scene.build(
+            asked.settings,
+            asked.packing,
+            asked.seed,
             lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
         )
-        if self._file is not None:
-            put_into(setup, self._file)
+        if asked.file is not None:
+            put_into(setup, asked.file)
         bodies = keep_bodies(setup.world)
-        start = Start(setup.packing.copy(), setup, bodies, self.settings, self._file)
-        self._start, self._run = start, self._first_run(setup)
+        start = Start(setup.packing.copy(), setup, bodies, asked)
+        self._start, self._run = start, _first_run(asked, setup)
         report("ready", 1.0)
-
-    def _first_run(self, setup: Setup) -> Run:
-        """The run of what was just built. Raises InputError where a file has brought what cannot be run."""
-        if self._file is None:
-            return Run(self.scene, self.settings, self.packing, self.seed, setup)
-        try:
-            run = Run(self.scene, self.settings, self.packing, self.seed, setup)
-        except InputError as error:
-            raise InputError(f"{self._file.name}: {error}") from None
-        if run.failed:
-            raise InputError(f"{self._file.name}: its grains cannot be relaxed")
-        return run
 
     def _compile(self, terms: Ingredients) -> None:
         report = self._progress or _silent
@@ -182,7 +167,6 @@ class Session:
                 self._adjust(name, value)
             case Recall(increment):
                 self.run.recall(increment)
-                self.settings = self.run.values
             case Undo():
                 self._go_to(self._past.undo(self._moment()))
             case Redo():
@@ -194,7 +178,9 @@ class Session:
         assert start is not None
         start.setup.packing = start.packing.copy()
         place_bodies(start.setup.world, start.bodies)
-        changed = {name for name, value in self.settings.items() if value != start.values[name]}
+        changed = {
+            name for name, value in self.settings.items() if value != start.asked.settings[name]
+        }
         self.scene.adjust(start.setup, self.settings, frozenset(changed))
         self._run = Run(self.scene, self.settings, self.packing, self.seed, start.setup)
 
@@ -202,18 +188,15 @@ class Session:
         """Where the session stands."""
         assert self._start is not None
         checkpoint = self.run.present()
-        return Moment(self.scene, self.packing, self.seed, self._start, self.run, checkpoint)
+        return Moment(self._start, self.run, checkpoint)
 
     def _go_to(self, moment: Moment) -> None:
         """Be as at that moment, with nothing held and the script off."""
         if moment.run is not self.run:
             self.run.checkpoints.squeeze(OLD_RUN_BYTES)
-        self.scene, self.packing, self.seed = moment.scene, moment.packing, moment.seed
         self._start, self._run = moment.start, moment.run
-        self._file = moment.start.file
         self._run.restore(moment.checkpoint)
         self._run.still()
-        self.settings = self._run.values
 
     def rebuilds(self, command: Command) -> bool:
         """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
@@ -230,7 +213,6 @@ class Session:
         if terms != self.scene.ingredients(self.settings):
             self._compile(terms)
         self.run.adjust(settings, frozenset({name}))
-        self.settings = settings
 
     def _rebuild(self, name: str, value: object) -> None:
         scene, packing, seed, settings = self.scene, self.packing, self.seed, dict(self.settings)
@@ -244,14 +226,7 @@ class Session:
             seed = check_seed(value)
         else:
             settings = scene.settings({**settings, name: value})
-        before = self.scene, self.packing, self.seed, self.settings, self._file
-        self.scene, self.packing, self.seed, self.settings = scene, packing, seed, settings
-        self._file = None
-        try:
-            self.build(self._progress)
-        except InputError:
-            self.scene, self.packing, self.seed, self.settings, self._file = before
-            raise
+        self._build(Asked(scene, packing, seed, settings))
 
     # Running.
 
@@ -290,6 +265,26 @@ class Session:
     # What can be seen.
 
     @property
+    def scene(self) -> Scene:
+        """What is built, or is going to be."""
+        return self._first.scene if self._run is None else self._run.scene
+
+    @property
+    def packing(self) -> str:
+        """The kind of it."""
+        return self._first.packing if self._run is None else self._run.packing_kind
+
+    @property
+    def seed(self) -> int:
+        """Of the random packing."""
+        return self._first.seed if self._run is None else self._run.seed
+
+    @property
+    def settings(self) -> Values:
+        """All parameters as they are now."""
+        return self._first.settings if self._run is None else self._run.values
+
+    @property
     def history(self) -> History:
         """One row an increment since the last reset."""
         return self.run.history
@@ -307,13 +302,13 @@ class Session:
     @property
     def file(self) -> SceneFile | None:
         """What the scene was read from, if it was."""
-        return self._file
+        return (self._first if self._start is None else self._start.asked).file
 
     def made(self) -> Made:
         """What there is to be kept in a file; quick, as it shares the checkpoint that is kept anyway."""
         kept = self.run.settled
-        worth = bool(self._commands) or self._file is not None
-        scene, file = self.scene.name, self._file
+        scene, file = self.scene.name, self.file
+        worth = bool(self._commands) or file is not None
         return Made(scene, self.packing, self.seed, kept.values, kept.engine, file, worth)
 
     def checks(self) -> list[Check]:
@@ -324,19 +319,32 @@ class Session:
         """All since the session began. Raises RuntimeError in the middle of an increment: finish it first."""
         if self.busy:
             raise RuntimeError("finish the increment before taking the log")
-        commands, end, digest = tuple(self._commands), self._finished, self.state_hash()
-        return Log(*self._first, commands, end, digest, self._first_file)
+        first, commands = self._first, tuple(self._commands)
+        return Log(
+            first.scene.name,
+            first.packing,
+            first.seed,
+            dict(first.settings),
+            commands,
+            self._finished,
+            self.state_hash(),
+            first.file,
+        )
+
+
+def _first_run(asked: Asked, setup: Setup) -> Run:
+    """The run of what was just built. Raises InputError where a file has brought what cannot be run."""
+    try:
+        run = Run(asked.scene, asked.settings, asked.packing, asked.seed, setup)
+    except InputError as error:
+        if asked.file is None:
+            raise
+        raise InputError(f"{asked.file.name}: {error}") from None
+    if asked.file and run.failed:
+        raise InputError(f"{asked.file.name}: its grains cannot be relaxed")
+    return run
 
 
 def _silent(text: str, share: float) -> None:
     """Progress that nobody watches."""
     del text, share
-
-
-def check_seed(seed: object) -> int:
-    """A seed is a whole number from 0 to 2⁶³ − 1. Raises InputError otherwise."""
-    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**63:
-        raise InputError(
-            f"the seed must be 0 or a positive whole number below 2^63, not {shown(seed)}"
-        )
-    return seed

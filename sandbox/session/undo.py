@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from core.engine_state import BodyState
 from core.errors import InputError
 from core.packing import Packing
-from sandbox.session.beginning import SceneFile
+from sandbox.session.beginning import Asked
 from sandbox.session.checkpoints import MOST_BYTES, Checkpoint
 from sandbox.session.commands import Change, Command, Erase, Place, Recall, Retype
 from sandbox.session.run import Run
-from scenes.scene import Scene, Setup, Values
+from scenes.scene import Setup
 
 MOST_MOMENTS = 100
 MOST_RUNS = 8  # of those that a reset or a new start has ended
@@ -26,17 +26,13 @@ class Start:
     packing: Packing
     setup: Setup
     bodies: tuple[BodyState, ...]
-    values: Values
-    file: SceneFile | None = None  # what it was read from
+    asked: Asked
 
 
 @dataclass(frozen=True)
 class Moment:
     """Where a session stands."""
 
-    scene: Scene
-    packing: str
-    seed: int
     start: Start
     run: Run
     checkpoint: Checkpoint
