@@ -107,7 +107,12 @@ ROOMS = {
     "session": "scenes core",
     "words": "scenes core",
 }
-HALL = {"sandbox", "sandbox.environment", "sandbox.interrupts"}  # in no room: for all in sandbox
+HALL = {
+    "sandbox",
+    "sandbox.bars",
+    "sandbox.environment",
+    "sandbox.interrupts",
+}  # in no room: for all in sandbox
 
 
 def room_of(name: str) -> str:

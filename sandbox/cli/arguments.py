@@ -20,7 +20,6 @@ SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
 HIGHEST_FPS = {".mp4": 120.0, ".gif": 50.0, ".png": 120.0}
 MOST_STEPS = 1_000_000
-LARGEST_SEED = 2**63 - 1
 LONGEST_LINE = 400  # letters of a message
 
 T = TypeVar("T")

@@ -18,6 +18,7 @@ from sandbox.cli import arguments, verbs
 from sandbox.cli import study as studies
 from sandbox.cli.arguments import Parser, argument
 from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
+from scenes.parameter import LARGEST_SEED
 
 PROGRAM = "python -m sandbox"
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
@@ -193,7 +194,7 @@ def _add_scene_options(parser: Parser) -> None:
     )
     parser.add_argument(
         "--seed",
-        type=argument(arguments.whole_number(0, arguments.LARGEST_SEED)),
+        type=argument(arguments.whole_number(0, LARGEST_SEED)),
         metavar="N",
         help="of the random packing (default: 1)",
     )

@@ -11,6 +11,7 @@ import io
 import os
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -30,12 +31,15 @@ from sandbox.files.toml_text import toml_text
 from sandbox.session.beginning import Made, SceneFile
 from sandbox.session.editing import line_of
 from scenes import registry
+from scenes.parameter import check_seed
 
 FORMAT = "auxetic-sandbox scene"
 VERSION = 1
 SUFFIX = ".toml"
 LARGEST_TEXT = 1 << 20  # bytes
 LARGEST_GRAINS = 1 << 26
+MOST_SHOWN = 24  # files of a folder that a menu has, the newest first
+MOST_LOOKED_AT = 400
 ABOUT = (
     "# A scene of the auxetic sandbox: open it with `python -m sandbox play THIS_FILE`.\n"
     "# The grains are in the file beside it; keep both together. Lengths are in radii of a large grain.\n"
@@ -129,8 +133,7 @@ def parse_scene(
         scene = registry.get(head["scene"])
         settings = scene.settings(numbers(head["settings"]))
         packing = scene.check_packing(head["packing"])
-        if not 0 <= head["seed"] < 2**63:
-            raise InputError("the seed must be 0 or a positive whole number below 2^63")
+        seed = check_seed(head["seed"])
         placements = placements_of(head.get("bodies", []))
         walls = walls_of(head.get("walls", []))
         grains = Packing.load(head["grains"], io.BytesIO(data))
@@ -142,7 +145,7 @@ def parse_scene(
         name,
         scene.name,
         packing,
-        head["seed"],
+        seed,
         settings,
         placements,
         walls,
@@ -198,3 +201,35 @@ def _head(name: str, text: bytes) -> dict[str, Any]:
     if not plain or not grains.endswith(".npz") or len(grains) > 255:
         raise InputError(f"{name}: grains must be the plain name of an .npz file beside this one")
     return head
+
+
+@dataclass(frozen=True, slots=True)
+class SceneHere:
+    """A scene file: where it is, and the name of the scene that it was made from."""
+
+    path: Path
+    scene: str
+
+
+def scenes_here(folder: Path) -> tuple[SceneHere, ...]:
+    """The scene files of a folder, the newest first; what cannot be read is left out."""
+    try:
+        paths = sorted(folder.glob(f"*{SUFFIX}"))[:MOST_LOOKED_AT]
+        dated = sorted(((path.stat().st_mtime, path) for path in paths), reverse=True)
+    except OSError:
+        return ()
+    found = (_look(path) for _, path in dated)
+    return tuple(scene for scene in found if scene is not None)[:MOST_SHOWN]
+
+
+def _look(path: Path) -> SceneHere | None:
+    try:
+        if not path.is_file() or path.stat().st_size > LARGEST_TEXT:
+            return None
+        head = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+    scene = head.get("scene")
+    if head.get("format") != FORMAT or not isinstance(scene, str):
+        return None
+    return SceneHere(path, scene)

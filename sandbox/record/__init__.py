@@ -1,1 +1,1 @@
-"""What observes a session and never changes it: window, video, table."""
+"""Films and tables of sessions, made without a window."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -12,6 +11,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sandbox.bars import bar_options
 from sandbox.files.table import SideBySide, Table, write_csv
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
@@ -113,7 +113,7 @@ def run(
         with (
             writer or nullcontext(),
             tqdm(
-                total=steps, desc=sessions[0].scene.name, unit="increment", **_bar_options()
+                total=steps, desc=sessions[0].scene.name, unit="increment", **bar_options()
             ) as bar,
         ):
             while increments < steps:
@@ -146,7 +146,7 @@ def build_bar() -> Iterator[Callable[[str, float], None]]:
     from tqdm import tqdm
 
     with tqdm(
-        total=1.0, bar_format="{desc:<42.42} {percentage:3.0f}%|{bar}| {elapsed}", **_bar_options()
+        total=1.0, bar_format="{desc:<42.42} {percentage:3.0f}%|{bar}| {elapsed}", **bar_options()
     ) as bar:
 
         def progress(text: str, fraction: float) -> None:
@@ -175,14 +175,3 @@ def _drawer(output: Output) -> Callable[[Sequence[Frame]], Any]:
         return renderer.image(frames, flashes=lit)
 
     return draw
-
-
-def _bar_options() -> dict[str, Any]:
-    """A line every ten seconds is enough where nobody watches the bar move."""
-    watched = sys.stderr.isatty()
-    return {
-        "file": sys.stderr,
-        "dynamic_ncols": watched,
-        "ncols": None if watched else 100,
-        "mininterval": 0.1 if watched else 10.0,
-    }

@@ -28,7 +28,7 @@ from sandbox.window.panel.curves import CurvesSection
 from sandbox.window.panel.general import GeneralSection
 from sandbox.window.panel.looks import LooksSection
 from sandbox.window.panel.panel import Panel
-from sandbox.window.panel.parameters import ParameterSection, Settings
+from sandbox.window.panel.parameters import ParameterSection, Wishes
 from sandbox.window.panel.scene_files import FilesSection
 from sandbox.window.picture import progress_of
 from sandbox.window.solvers.panes import Panes
@@ -106,7 +106,7 @@ class App:
         self.guide = Guide(stage)
         self.pages = Pages(stage, self.guide)
         self.actions = Actions(stage, self.pages)
-        settings = Settings(stage)
+        wishes = Wishes(stage)
         self.timeline = Timeline(stage, self.actions)
         self.inspector = Inspector(stage)
         self.brush = Brush(stage)
@@ -117,7 +117,7 @@ class App:
             self.timeline,
             self.inspector,
             self.brush,
-            *(ParameterSection(name, settings) for name in ("grains", "geometry", "solver")),
+            *(ParameterSection(name, wishes) for name in ("grains", "geometry", "solver")),
             CurvesSection(stage),
             FilesSection(stage, self.actions),
             LooksSection(stage, self.actions),
@@ -126,7 +126,7 @@ class App:
         stage.parts = [
             self.panel,
             self.timeline,
-            settings,
+            wishes,
             self.brush,
             self.inspector,
             arrows,

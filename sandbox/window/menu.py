@@ -27,7 +27,7 @@ from sandbox.draw.pages.menu_layout import (
 )
 from sandbox.draw.pages.menu_page import draw_menu
 from sandbox.draw.painter import Painter
-from sandbox.files.scenes_here import SceneHere, scenes_here
+from sandbox.files.scene_file import SceneHere, scenes_here
 from sandbox.window.keys import Action
 from sandbox.words import language, words
 from scenes import registry

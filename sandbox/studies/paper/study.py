@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError, did_you_mean
+from sandbox.bars import bar_options
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.paper import bulk as paper_bulk
 from sandbox.studies.paper import flow as paper_flow
@@ -99,17 +100,8 @@ def _run(
 ) -> None:
     from tqdm import tqdm
 
-    watched = sys.stderr.isatty()
-    with tqdm(
-        total=found + len(missing),
-        initial=found,
-        unit="run",
-        desc="runs",
-        file=sys.stderr,
-        dynamic_ncols=watched,
-        ncols=None if watched else 100,
-        mininterval=0.1 if watched else 10.0,
-    ) as bar:
+    count = found + len(missing)
+    with tqdm(total=count, initial=found, unit="run", desc="runs", **bar_options()) as bar:
 
         def done(result: Result) -> None:
             results[result.request] = result

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from core.warmup import compile_kernels
 from sandbox import __version__
+from sandbox.bars import bar_options
 from sandbox.interrupts import deferred
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.pool import Pool, stopping
@@ -97,17 +98,10 @@ def _run(
 ) -> None:
     from tqdm import tqdm
 
-    watched = sys.stderr.isatty()
+    known = len(outcomes)
     with (
         Pool(jobs) as pool,
-        tqdm(
-            total=len(waiting) + len(outcomes),
-            initial=len(outcomes),
-            unit="case",
-            file=sys.stderr,
-            mininterval=0.1 if watched else 10.0,
-            ncols=None if watched else 100,
-        ) as bar,
+        tqdm(total=len(waiting) + known, initial=known, unit="case", **bar_options()) as bar,
     ):
         if warm:
             bar.set_description_str("compiling")

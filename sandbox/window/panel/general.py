@@ -16,8 +16,8 @@ from sandbox.window.sections import Value
 from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes import registry
+from scenes.parameter import LARGEST_SEED
 
-MOST_SEED = 2**31 - 1
 ACTIONS = {
     "reset": Action.RESET,
     "undo": Action.UNDO,
@@ -62,7 +62,7 @@ class GeneralSection:
             words.PANEL_SEED,
             self.stage.panes.seed,
             0,
-            MOST_SEED,
+            LARGEST_SEED,
             words.PANEL_SEED_HELP,
         )
         controls: list[Control] = [

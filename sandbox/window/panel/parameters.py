@@ -44,7 +44,7 @@ class _Wish:
     sent: float | None = None  # when [s]
 
 
-class Settings(Silent):
+class Wishes(Silent):
     """What is set and what is on its way to the solver: at most one change of a parameter a picture."""
 
     def __init__(self, stage: Stage) -> None:
@@ -129,9 +129,9 @@ class Settings(Silent):
 class ParameterSection:
     """Some of the parameters as sliders and switches."""
 
-    def __init__(self, name: str, settings: Settings) -> None:
+    def __init__(self, name: str, wishes: Wishes) -> None:
         self.name = name
-        self.settings = settings
+        self.wishes = wishes
 
     @property
     def title(self) -> str:
@@ -144,7 +144,7 @@ class ParameterSection:
         return bool(self._own())
 
     def _own(self) -> list[Parameter]:
-        return [p for p in self.settings.parameters() if section_of(p) == self.name]
+        return [p for p in self.wishes.parameters() if section_of(p) == self.name]
 
     def controls(self) -> Sequence[Control]:
         """One for each parameter."""
@@ -152,14 +152,14 @@ class ParameterSection:
 
     def use(self, name: str, value: Value | str, done: bool) -> None:
         """Ask the scene for it."""
-        for parameter in self.settings.parameters():
+        for parameter in self.wishes.parameters():
             if f"{self.name}/{parameter.name}" == name:
-                self.settings.ask(parameter, value, done)
+                self.wishes.ask(parameter, value, done)
 
     def _control(self, parameter: Parameter) -> Control:
-        frame = self.settings.frame
+        frame = self.wishes.frame
         scene = "" if frame is None else frame.scene
-        value = self.settings.value(parameter)
+        value = self.wishes.value(parameter)
         title = words.parameter_name(parameter.name)
         about = words.parameter_help(scene, parameter.name, parameter.help)
         about = about[:1].upper() + about[1:] + "."

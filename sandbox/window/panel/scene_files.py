@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from sandbox.draw.widgets.controls import Button, Control, Note, Row, TextField
-from sandbox.files.scenes_here import SUFFIX, scenes_here
+from sandbox.files.scene_file import SUFFIX, scenes_here
 from sandbox.window.actions import Actions
 from sandbox.window.sections import StageSection, Value
 from sandbox.window.stage import Stage
