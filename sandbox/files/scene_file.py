@@ -20,13 +20,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import Packing
-from sandbox.files.scene_checks import (
-    check_grains,
-    friction_of,
-    numbers,
-    placements_of,
-    walls_of,
-)
+from sandbox.files.scene_checks import check_grains, friction_of, numbers, placements_of, walls_of
 from sandbox.files.toml_text import toml_text
 from sandbox.session.beginning import Made, SceneFile
 from sandbox.session.editing import line_of

@@ -83,13 +83,14 @@ def in_step(sessions: Sequence[Session]) -> Iterator[bool]:
     not depend on how fast the machine is.
     """
     with ThreadPoolExecutor(min(len(sessions), os.cpu_count() or 1)) as pool:
+        works = [session.slices(SLICE) for session in sessions]
         finished = True
         while finished:
-            at_work, finished = list(sessions), False
+            at_work, finished = works, False
             while at_work:
-                done = list(pool.map(lambda session: session.advance(SLICE), at_work))
-                finished |= any(done)
-                at_work = [s for s, d in zip(at_work, done, strict=True) if not (d or s.idle)]
+                done = list(pool.map(lambda work: next(work, None), at_work))
+                finished |= True in done
+                at_work = [w for w, d in zip(at_work, done, strict=True) if d is False]
                 if at_work or finished:
                     yield not at_work
 

@@ -28,15 +28,15 @@ def replay(
     session.build(progress)
     yield session
     waiting = deque(log.commands)
+    work = session.slices(slice_iterations)
     while True:
         while waiting and waiting[0][0] == session.finished:
             session.submit(waiting.popleft()[1])
         if session.finished >= log.end:
             session.settle()
             return
-        while not session.advance(slice_iterations):
-            if session.idle:
-                raise InputError(
-                    f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
-                )
+        if not any(work):  # goes on to the end of an increment
+            raise InputError(
+                f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
+            )
         yield session

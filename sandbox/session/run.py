@@ -17,7 +17,7 @@ from sandbox.session.commands import Edit
 from sandbox.session.course import Course
 from sandbox.session.editing import edited
 from sandbox.session.frame import Frame
-from sandbox.session.hands import Driven
+from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
 from sandbox.session.reading import BOX, follow_drive, read_off, tell_what_stopped
 from sandbox.session.take_frame import View, take
@@ -29,14 +29,15 @@ MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to 
 AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
-class Run(Driven):
+class Run:
     """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
 
     def __init__(
         self, scene: Scene, values: Values, packing_kind: str, seed: int, setup: Setup
     ) -> None:
         drive = setup.handles[0]
-        super().__init__(scene, values, setup, Course(drive.direction, len(setup.packing)))
+        self.scene, self.values, self.setup = scene, values, setup
+        self._course = Course(drive.direction, len(setup.packing))
         self.packing_kind, self.seed = packing_kind, seed
         friction = None
         if setup.friction > 0.0:
@@ -69,6 +70,15 @@ class Run(Driven):
         self._keep()
 
     # Changes.
+
+    @property
+    def hands(self) -> Hands:
+        """What holds its bodies and says where they go."""
+        return Hands(self.scene, self.values, self.setup, self._course)
+
+    def say(self, notice: str) -> None:
+        """Plain words for the person at the window, until something else is to be said."""
+        self._course.notices = [notice]
 
     def adjust(self, values: Values, changed: frozenset[str]) -> None:
         """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
@@ -125,17 +135,17 @@ class Run(Driven):
     @property
     def idle(self) -> bool:
         """True if no body has to move and nothing is being relaxed."""
-        return self._still and not self.engine.busy and not self._wanted()
+        return self._still and not self.engine.busy and not self.hands.wanted()
 
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
-            targets = {} if self._course.touched else self._next_targets()
+            targets = {} if self._course.touched else self.hands.next_targets()
             if not targets and self._still:
                 return False
             box = targets.pop(BOX, None)
             try:
-                self.engine.begin(targets, None if box is None else self._cell(box))
+                self.engine.begin(targets, None if box is None else self.hands.cell(box))
             except InputError as error:
                 self._give_up(error)
                 return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import get_args
 
@@ -150,13 +150,13 @@ class Session:
     def _do(self, command: Command) -> None:
         match command:
             case Grab(handle):
-                self.run.grab(handle)
+                self.run.hands.grab(handle)
             case Move(handle, x, y):
-                self.run.move(handle, (x, y))
+                self.run.hands.move(handle, (x, y))
             case Release(handle):
-                self.run.release(handle)
+                self.run.hands.release(handle)
             case Protocol(on):
-                self.run.follow_script(on)
+                self.run.hands.follow_script(on)
             case Reset():
                 self._reset()
             case Place() | Erase() | Retype() | DrawWall() | EraseWall():
@@ -196,7 +196,7 @@ class Session:
             self.run.checkpoints.squeeze(OLD_RUN_BYTES)
         self._start, self._run = moment.start, moment.run
         self._run.restore(moment.checkpoint)
-        self._run.still()
+        self._run.hands.course.still()
 
     def rebuilds(self, command: Command) -> bool:
         """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
@@ -261,6 +261,14 @@ class Session:
             return False
         self._finished += 1
         return True
+
+    def slices(self, iterations: int) -> Iterator[bool]:
+        """Work, at most so many force evaluations at a time, until nothing is left to do; True where an increment was finished.
+
+        Whoever drives a session, a film, a replay, a study, looks at it in between.
+        """
+        while (finished := self.advance(iterations)) or not self.idle:
+            yield finished
 
     # What can be seen.
 

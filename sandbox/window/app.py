@@ -118,7 +118,7 @@ class App:
             self.inspector,
             self.brush,
             *(ParameterSection(name, wishes) for name in ("grains", "geometry", "solver")),
-            CurvesSection(stage),
+            CurvesSection(stage, self.actions),
             FilesSection(stage, self.actions),
             LooksSection(stage, self.actions),
         ]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from sandbox.draw.widgets.controls import Control
+from sandbox.window.actions import Actions
 from sandbox.window.stage import Stage
 from sandbox.words import words
 
@@ -39,8 +40,8 @@ class StageSection:
 
     name: str
 
-    def __init__(self, stage: Stage) -> None:
-        self.stage = stage
+    def __init__(self, stage: Stage, actions: Actions) -> None:
+        self.stage, self.actions = stage, actions
 
     @property
     def title(self) -> str:

@@ -15,6 +15,7 @@ import pytest
 from core.errors import InputError
 from sandbox.record import record
 from sandbox.record.record import Outcome, Output
+from sandbox.session.session import Session
 
 SIZE = (64, 48)
 
@@ -25,21 +26,21 @@ class Cardboard:
     def __init__(self) -> None:
         self.scene = SimpleNamespace(name="cardboard")
         self.history = self
-        self.slices = 0
+        self.slices_done = 0
         self.asked_for_frames = 0
         self.idle_after: int | None = None
         self.on_increment: Callable[[int], None] = lambda increment: None
 
     @property
     def increments(self) -> int:
-        return self.slices // 2
+        return self.slices_done // 2
 
     def advance(self, max_iterations: int) -> bool:
         assert max_iterations == record.SLICE
         if self.idle:
             return False
-        self.slices += 1
-        if self.slices % 2:
+        self.slices_done += 1
+        if self.slices_done % 2:
             return False
         self.on_increment(self.increments)
         return True
@@ -47,6 +48,8 @@ class Cardboard:
     @property
     def idle(self) -> bool:
         return self.increments == self.idle_after
+
+    slices: Any = Session.slices
 
     def frame(self) -> int:
         self.asked_for_frames += 1

@@ -61,7 +61,7 @@ def test_execute_tells_of_a_run_that_ended_early(monkeypatch: pytest.MonkeyPatch
             row = replace(session.run.history[-1], increment=1, stop_reason="collapsed")
             session.run.history.append(row)
             return True
-        session.run.follow_script(False)
+        session.run.hands.follow_script(False)
         return False
 
     monkeypatch.setattr(Session, "advance", collapse)

@@ -21,7 +21,7 @@ def squeezed() -> Frame:
     """A real packing with the intruder pressed into it."""
     session = Session("intruder", "mixed", 3, {"grains": 50, "intruder_radius": 2.0})
     session.build()
-    session.run.follow_script(True)
+    session.run.hands.follow_script(True)
     for _ in range(4):
         while not session.advance():
             pass

@@ -265,11 +265,7 @@ def parts_of(control: Simple, rect: pygame.Rect, type_: Type) -> Parts:
             )
             return Parts(title, track, box)
         case Stepper():
-            less, more = body.copy(), body.copy()
-            less.width = more.width = min(body.height, body.width // 3)
-            more.right = body.right
-            box = pygame.Rect(less.right, body.top, more.left - less.right, body.height)
-            return Parts(title, none, box, arrows=(less, more))
+            return _between_arrows(title, body)
         case Choice(options=options):
             return _parts_of_choice(options, title, body, type_)
         case _:
@@ -289,11 +285,15 @@ def _parts_of_choice(
             rects.append(pygame.Rect(round(x), body.top, round(right) - round(x), body.height))
             x = right
         return Parts(title, none, body, options=tuple(rects))
+    return _between_arrows(title, body)
+
+
+def _between_arrows(title: pygame.Rect, body: pygame.Rect) -> Parts:
     less, more = body.copy(), body.copy()
     less.width = more.width = min(body.height, body.width // 3)
     more.right = body.right
     box = pygame.Rect(less.right, body.top, more.left - less.right, body.height)
-    return Parts(title, none, box, arrows=(less, more))
+    return Parts(title, pygame.Rect(body.topleft, (0, 0)), box, arrows=(less, more))
 
 
 def size_of_choice(options: Sequence[Option], width: int, type_: Type) -> int | None:

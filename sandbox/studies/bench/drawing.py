@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 from sandbox.environment import prepare_headless
 from sandbox.session.commands import Protocol
 from sandbox.session.frame import Frame
@@ -20,9 +22,8 @@ def example(grains: int, packing: str = "mixed", increments: int = 5) -> Frame:
     session = Session("intruder", packing, 1, {"grains": grains})
     session.build()
     session.submit(Protocol(True))
-    done = 0
-    while done < increments and not (done and session.idle):
-        done += session.advance(400)
+    for _ in islice(filter(None, session.slices(400)), increments):
+        pass
     return session.frame()
 
 

@@ -107,12 +107,12 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
     session.submit(Protocol(True))
     probe = PROBES[request.probe]()
     rows = [probe.look(session)]
-    while len(rows) <= steps:
+    for finished in session.slices(SLICE):
         check()
-        if session.advance(SLICE):
+        if finished:
             rows.append(probe.look(session))
-        elif session.idle:
-            break
+            if len(rows) > steps:
+                break
     reasons = session.history.column("stop_reason")[1:]
     ended = None
     if len(reasons) and str(reasons[-1]) in BROKEN:

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Switch
-from sandbox.window.actions import Actions
 from sandbox.window.keys import Action
 from sandbox.window.sections import StageSection, Value
-from sandbox.window.stage import Stage
 from sandbox.words import language, words
 
 SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
@@ -18,10 +16,6 @@ class LooksSection(StageSection):
     """Force chains, theme, size of text, language, sound."""
 
     name = "looks"
-
-    def __init__(self, stage: Stage, actions: Actions) -> None:
-        super().__init__(stage)
-        self.actions = actions
 
     def controls(self) -> Sequence[Control]:
         """Switches and choices."""

@@ -25,8 +25,7 @@ class FilesSection(StageSection):
     name = "files"
 
     def __init__(self, stage: Stage, actions: Actions) -> None:
-        super().__init__(stage)
-        self.actions = actions
+        super().__init__(stage, actions)
         self.stem = ""  # typed; empty: after the scene
         self._found: tuple[Path, ...] = ()
         self._looked = -STALE
