@@ -21,6 +21,7 @@ from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
 from scenes.parameter import LARGEST_SEED
 
 PROGRAM = "python -m sandbox"
+Command = Callable[[str, Callable[[argparse.Namespace], int], str], Parser]
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
 
 
@@ -79,11 +80,19 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         commands[name].set_defaults(run=run)
         return commands[name]
 
+    for add in (_add_listing, _add_play, _add_record, _add_replay, _add_bench, _add_study):
+        add(command)
+    return parser, commands
+
+
+def _add_listing(command: Command) -> None:
     listing = command(
         "list", verbs.list_scenes, "Print the scenes, their packings and their parameters."
     )
     listing.add_argument("--json", action="store_true", help="print the same as JSON")
 
+
+def _add_play(command: Command) -> None:
     play = command("play", verbs.play, "Open a window; grab a handle with the mouse and move it.")
     play.add_argument(
         "scene",
@@ -103,6 +112,8 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     )
     _add_look(play, "that of this computer, if there is a choice")
 
+
+def _add_record(command: Command) -> None:
     record = command(
         "record", verbs.record, "Run a scene by itself, and write a film, a table or both."
     )
@@ -141,6 +152,8 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         help="a frame for every N increments (default: 1)",
     )
 
+
+def _add_replay(command: Command) -> None:
     replay = command(
         "replay", verbs.replay, "Repeat a logged run; say whether it came out the same."
     )
@@ -149,6 +162,8 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
     _add_look(replay)
 
+
+def _add_bench(command: Command) -> None:
     bench = command("bench", verbs.bench, "Measure how fast the program is on this machine.")
     bench.add_argument("--json", metavar="FILE.json", help="write all numbers down")
     bench.add_argument("--markdown", metavar="FILE.md", help="write the results as a table")
@@ -159,6 +174,8 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
     )
     bench.add_argument("--quick", action="store_true", help="under half a minute, less exact")
 
+
+def _add_study(command: Command) -> None:
     study = command("study", verbs.study, "Measure, and write tables and figures.")
     study.add_argument(
         "name",
@@ -183,7 +200,6 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         metavar="N",
         help="runs at the same time (default: 2)",
     )
-    return parser, commands
 
 
 def _add_scene_options(parser: Parser) -> None:

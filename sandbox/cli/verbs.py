@@ -58,6 +58,7 @@ def play(options: argparse.Namespace) -> int:
     environment.require_pygame_ce()
     environment.require_display()
     from sandbox.window import app
+    from sandbox.window.display import Looks
 
     return app.run(
         scene,
@@ -65,11 +66,8 @@ def play(options: argparse.Namespace) -> int:
         _seed(options),
         settings,
         log=log,
-        size=options.size,
-        scale=options.scale,
-        theme=options.theme,
-        view=options.view,
         packings=options.compare or (),
+        looks=Looks(options.size, options.scale, options.theme, options.view),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from core.errors import InputError
 from sandbox.session.log import Log
-from sandbox.session.session import Progress, Session
+from sandbox.session.session import Session, Tell
 
 
 def session_of(log: Log) -> Session:
@@ -18,7 +18,7 @@ def session_of(log: Log) -> Session:
 
 
 def replay(
-    log: Log, progress: Progress | None = None, slice_iterations: int = 400
+    log: Log, progress: Tell | None = None, slice_iterations: int = 400
 ) -> Iterator[Session]:
     """Yield the session built, then again after each increment.
 

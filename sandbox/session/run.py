@@ -20,7 +20,7 @@ from sandbox.session.frame import Frame
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
 from sandbox.session.reading import BOX, follow_drive, read_off, tell_what_stopped
-from sandbox.session.take_frame import View, take
+from sandbox.session.take_frame import Shown, take
 from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
 from scenes.text import message
 
@@ -313,7 +313,7 @@ class Run:
     def frame(self, can_undo: bool = False, can_redo: bool = False) -> Frame:
         """A snapshot that shares nothing with the run."""
         return take(
-            View(
+            Shown(
                 scene=self.scene,
                 settings=self.values,
                 packing_kind=self.packing_kind,

@@ -46,7 +46,7 @@ COMPILE_SHARE = 0.5
 UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
 JOURNEYS = (Reset, Recall, Undo, Redo)
 
-Progress = Callable[[str, float], None]
+Tell = Callable[[str, float], None]  # what is being built, and the share of it that is done
 
 
 class Session:
@@ -71,7 +71,7 @@ class Session:
         self._run: Run | None = None
         self._start: Start | None = None
         self._past = Past()
-        self._progress: Progress | None = None
+        self._progress: Tell | None = None
 
     @classmethod
     def from_file(cls, file: SceneFile) -> Session:
@@ -80,7 +80,7 @@ class Session:
         session._first = replace(session._first, file=file)
         return session
 
-    def build(self, progress: Progress | None = None) -> None:
+    def build(self, progress: Tell | None = None) -> None:
         """Compile the kernels, pack the grains, relax. ``progress(text, share)`` is called from this thread."""
         self._progress = progress
         self._build(self._first)

@@ -21,7 +21,7 @@ from scenes.text import Text
 
 
 @dataclass(frozen=True)
-class View:
+class Shown:
     """The parts of a session that a frame shows."""
 
     scene: Scene
@@ -40,7 +40,7 @@ class View:
     can_redo: bool
 
 
-def take(view: View) -> Frame:
+def take(view: Shown) -> Frame:
     """A snapshot of ``view`` that shares nothing with it."""
     packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
     under_way = view.engine.progress()
@@ -108,7 +108,7 @@ def _force_error(history: History) -> float:
     return history[-1].force_error / scale if scale > 0.0 else math.nan
 
 
-def _ahead(view: View) -> Ahead | None:
+def _ahead(view: Shown) -> Ahead | None:
     """What is kept of later increments."""
     if view.future is None:
         return None
@@ -119,7 +119,7 @@ def _ahead(view: View) -> Ahead | None:
 
 
 def _contact_lines(
-    view: View,
+    view: Shown,
     packing: Packing,
     primitives: NDArray[np.float64],
     x: NDArray[np.float64],
@@ -146,7 +146,7 @@ def _contact_lines(
     )
 
 
-def _handle_state(view: View, handle: Handle) -> HandleState:
+def _handle_state(view: Shown, handle: Handle) -> HandleState:
     box = view.setup.packing.box
     target = view.course.targets.get(handle.body)
     if handle.body == "box" and box is not None:

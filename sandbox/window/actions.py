@@ -8,7 +8,7 @@ import pygame
 
 from core.errors import InputError
 from sandbox.draw.views import view_after
-from sandbox.session.commands import Change
+from sandbox.session.commands import Change, Protocol
 from sandbox.window.display import save_picture
 from sandbox.window.export import export, free_stem
 from sandbox.window.keys import Action, packing_for
@@ -106,7 +106,7 @@ class Actions:
         elif action is Action.PROTOCOL and frame is not None:
             self.stage.mouse.release(self.stage.send)
             self.stage.has_begun()
-            self.stage.panes.drive(not frame.protocol)
+            self.stage.send(Protocol(not frame.protocol))
             self.stage.toast(words.DRIVE_OFF if frame.protocol else words.DRIVE_ON)
         elif action is Action.NEW_SEED:
             self.change_seed(None)
@@ -126,10 +126,7 @@ class Actions:
     def change_seed(self, seed: int | None) -> None:
         """Pack by other chances; None: by the next seed."""
         self.stage.forget_picture()
-        if seed is None:
-            self.stage.panes.change_seed()
-        else:
-            self.stage.send(Change("seed", seed))
+        self.stage.send(Change("seed", self.stage.panes.seed + 1 if seed is None else seed))
         self.stage.toast(words.NEW_SEED.format(seed=self.stage.panes.seed))
 
     def change_packing(self, packing: str) -> None:
@@ -138,7 +135,7 @@ class Actions:
             self.stage.toast(words.COMPARE_ALL)
         elif packing != self.stage.panes.packing:
             self.stage.forget_picture()
-            self.stage.panes.change_packing(packing)
+            self.stage.send(Change("packing", packing))
             self.stage.toast(words.NEW_PACKING.format(packing=words.PACKINGS.get(packing, packing)))
 
     def compare(self) -> None:

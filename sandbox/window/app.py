@@ -20,7 +20,7 @@ from sandbox.window.canvas.arrows import Arrows
 from sandbox.window.canvas.brush import Brush
 from sandbox.window.canvas.canvas import Canvas
 from sandbox.window.canvas.inspector import Inspector
-from sandbox.window.display import FRAMES, Rate
+from sandbox.window.display import FRAMES, USUAL, Looks, Rate
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action, action_of
 from sandbox.window.pages import Pages
@@ -49,20 +49,17 @@ def run(
     settings: Mapping[str, object] | None = None,
     *,
     log: str | os.PathLike[str] | None = None,
-    size: tuple[int, int] = (1280, 720),
-    scale: float | None = None,
-    theme: str = "dark",
-    view: str = "kind",
     packings: Sequence[str] = (),
+    looks: Looks = USUAL,
 ) -> int:
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
-    ``packings``: side by side, if any are named. ``scale`` None: by the screen's size. ``log``: where the log of the last
+    ``packings``: side by side, if any are named. ``log``: where the log of the last
     scene started is written at the end. Raises InputError without a display and for what does not exist.
     """
     sys.setswitchinterval(SWITCH)
     panes = Panes(packing, seed, autosave=autosave.begin())
-    app = App(panes, size=size, scale=scale, theme=theme, view=view)
+    app = App(panes, looks)
     clean = False
     try:
         if scene is None:
@@ -92,17 +89,8 @@ def run(
 class App:
     """The window, put together from its parts; ``tick`` is one picture."""
 
-    def __init__(
-        self,
-        panes: Panes,
-        *,
-        size: tuple[int, int] = (1280, 720),
-        scale: float | None = None,
-        theme: str = "dark",
-        view: str = "kind",
-    ) -> None:
-        stage = Stage(panes, self.handle, size=size, scale=scale, theme=theme, view=view)
-        self.stage = stage
+    def __init__(self, panes: Panes, looks: Looks) -> None:
+        stage = self.stage = Stage(panes, self.handle, looks)
         self.guide = Guide(stage)
         self.pages = Pages(stage, self.guide)
         self.actions = Actions(stage, self.pages)

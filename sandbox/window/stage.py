@@ -12,7 +12,7 @@ from sandbox.draw.render import Renderer
 from sandbox.files.autosave import Leftover
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command
-from sandbox.window.display import natural_scale, open_display
+from sandbox.window.display import Looks, natural_scale, open_display
 from sandbox.window.film import Recorder
 from sandbox.window.focus import Focus
 from sandbox.window.hand import Mouse
@@ -29,14 +29,7 @@ class Stage:
     """The panes and their picture, mouse and keyboard, notices, film and sound, and which page lies over them."""
 
     def __init__(
-        self,
-        panes: Panes,
-        handle: Callable[[pygame.event.Event], None],
-        *,
-        size: tuple[int, int],
-        scale: float | None,
-        theme: str,
-        view: str,
+        self, panes: Panes, handle: Callable[[pygame.event.Event], None], looks: Looks
     ) -> None:
         """``handle`` takes an event, such as that of a key that is held and counts again."""
         self.panes = panes
@@ -47,8 +40,9 @@ class Stage:
         self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.mouse = Mouse()
         self.notices = Notices()
-        self.screen = open_display(size)
-        self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
+        self.screen = open_display(looks.size)
+        scale = looks.scale or natural_scale()
+        self.renderer = Renderer(self.screen.get_size(), scale, looks.theme, looks.view)
         self.picture = Picture(panes, self.renderer)
         self.recorder = Recorder()
         self.sound = Sound()

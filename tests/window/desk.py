@@ -9,6 +9,7 @@ from typing import Any
 import pygame
 
 from sandbox.window.app import App
+from sandbox.window.display import Looks
 from sandbox.window.solvers.panes import Panes
 from tests.window.fake_session import FakeSession
 
@@ -18,7 +19,7 @@ class Desk:
 
     def __init__(self, size: tuple[int, int] = (800, 600), scale: float = 1.0) -> None:
         self.sessions: list[FakeSession] = []
-        self.app = App(Panes("mixed", 1, self._make), size=size, scale=scale)
+        self.app = App(Panes("mixed", 1, self._make), Looks(size, scale))
 
     def _make(self, *arguments: Any) -> Any:
         session = FakeSession(*arguments)

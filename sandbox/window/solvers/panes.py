@@ -12,7 +12,7 @@ from sandbox.files.autosave import Autosave, Leftover
 from sandbox.files.log_file import write_log
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.beginning import SceneFile
-from sandbox.session.commands import Change, Command, Protocol, Recall, Redo, Reset, Undo
+from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
 from sandbox.window.solvers.conductor import Conductor
@@ -22,8 +22,6 @@ from sandbox.window.solvers.solver_thread import Snapshot, SolverThread
 from sandbox.words import words
 from scenes import registry
 from scenes.text import message
-
-Settings = Mapping[str, object]
 
 NOTHING_TO_SAVE = "there is nothing to save yet"
 PATIENCE = 2.0  # with a thread that is to end [s]
@@ -109,7 +107,7 @@ class Panes:
     # Beginning and ending.
 
     def start(
-        self, scene: str, settings: Settings | None = None, packings: Sequence[str] = ()
+        self, scene: str, settings: Mapping[str, object] | None = None, packings: Sequence[str] = ()
     ) -> None:
         """Leave what runs and build a scene, with these packings side by side if any are named.
 
@@ -276,19 +274,6 @@ class Panes:
         """No more increments a second than that; inf: as many as the solvers manage."""
         self._speed = increments_per_second
         self._conductor.set_speed(increments_per_second)
-
-    def drive(self, on: bool) -> None:
-        """The scripted drive."""
-        self.send(Protocol(on))
-
-    def change_packing(self, packing: str) -> None:
-        """Pack again, with other grains. Side by side all are there already."""
-        if not self.comparing:
-            self.send(Change("packing", packing))
-
-    def change_seed(self) -> None:
-        """Pack again, by other chances."""
-        self.send(Change("seed", self.seed + 1))
 
     def hold(self) -> None:
         """Pause while the menu is open."""

@@ -12,7 +12,6 @@ import logging
 import math
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
@@ -20,6 +19,7 @@ from core.errors import InputError
 from sandbox.session.beginning import Made
 from sandbox.session.commands import Command
 from sandbox.session.frame import Frame
+from sandbox.session.session import Tell
 from sandbox.window.solvers.conductor import Conductor, Turn
 from scenes.text import message
 
@@ -29,14 +29,13 @@ SLICE = 200  # iterations of the minimiser between two looks at whether to end
 CANCELLED = "cancelled: everything is as it was before"
 PICTURE = 1.0 / 90.0  # pictures of an unfinished increment are taken no more often than this [s]
 
-Progress = Callable[[str, float], None]
 Phase = Literal["building", "catching up", "running", "failed", "stopped"]
 
 
 class SessionLike(Protocol):
     """What the thread asks of a session."""
 
-    def build(self, progress: Progress | None = None) -> None:
+    def build(self, progress: Tell | None = None) -> None:
         """Compile and pack."""
 
     def submit(self, command: Command) -> None:
