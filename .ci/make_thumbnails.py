@@ -47,8 +47,8 @@ def main(names: list[str]) -> None:
 
 def frame(scene: str, packing: str, settings: dict[str, object], steps: int):
     """The scene after so many increments of its own drive."""
-    from sandbox.commands import Protocol
-    from sandbox.session import Session
+    from sandbox.session.commands import Protocol
+    from sandbox.session.session import Session
 
     session = Session(scene, packing, 1, settings)
     session.build()
@@ -76,7 +76,7 @@ def write(frame, theme: str, path: Path) -> None:
     import pygame
     from PIL import Image
 
-    from sandbox.draw.thumbnail import drawn
+    from sandbox.draw.pages.thumbnail import drawn
 
     surface = drawn(frame, theme)
     picture = Image.frombytes("RGB", surface.get_size(), pygame.image.tobytes(surface, "RGB"))

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from core.observables import GrainContacts, RigidContacts
 from core.packing import Packing
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 WEAK = 0.1  # of the mean contact force: contacts below it hold nothing

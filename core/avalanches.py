@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.observables import GrainContacts
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 _GRAIN = 2**31

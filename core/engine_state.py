@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from core.arrays import Floats
 from core.friction import Friction
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
-
-if TYPE_CHECKING:
-    from core.quasistatic import Settings
-
-Floats = NDArray[np.float64]
+from core.settings import Settings
 
 
 @dataclass(frozen=True)

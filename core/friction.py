@@ -21,13 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.errors import InputError
 from core.jit import kernel
 from core.observables import GrainContacts, RigidContacts
 from core.packing import MAX_LABEL, Packing, PeriodicBox
 from core.rigid_contacts import DISC
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 TANGENTIAL_STIFFNESS = 0.5  # k_t over C

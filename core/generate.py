@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.errors import InputError
 from core.jit import kernel
 from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
@@ -23,7 +24,6 @@ from core.relaxation import Relaxation, StopReason
 from core.rigid import Point, RigidWorld, polygon_area
 from core.rigid_contacts import EDGE, image
 
-Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 SIZE_RATIO = 1.4

@@ -12,22 +12,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.errors import InputError
 from core.observables import GrainContacts, stress
 from core.packing import PeriodicBox
 from core.rigid import Point
 
-MACHINE = math.inf  # [k R] the strength of a testing machine
 SLACK = 0.02  # of the strength: by so much a force may exceed it
 SHORTEST = 0.01  # of an increment: a shorter way is none
 CELL = "box"  # the name of the handle that is no body but the periodic cell
 MOST_TRIES = 10  # of one increment, before the hand is told that there is no way
-
-
-def check_strength(strength: float) -> None:
-    """Raises InputError unless the strength [k R] is greater than 0; it may be without bound."""
-    if not strength > 0.0:
-        raise InputError("the hand's strength must be greater than 0 k R")
 
 
 def force_on_body(reaction: Point, pull: Point) -> float:

@@ -11,11 +11,10 @@ C = 2 + (λ+1)²/(λμ) and κ = Cμ. Every function takes floats or arrays of a
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from core.arrays import Floats
 from core.errors import InputError
-
-Floats = NDArray[np.float64]
 
 DEFAULT_CONTACT_STIFFNESS = 50.0
 DEFAULT_POISSON_RATIO = 0.8

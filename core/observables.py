@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import neighbors, rigid_contacts
+from core.arrays import Floats
 from core.contacts import grain_overlap
 from core.jit import kernel
 from core.packing import Packing
 
-Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 

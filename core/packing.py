@@ -20,9 +20,10 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from core.arrays import Floats
 from core.errors import InputError
 from core.files import atomic_write
-from core.material import DEFAULT_CONTACT_STIFFNESS, Floats, check_material
+from core.material import DEFAULT_CONTACT_STIFFNESS, check_material
 
 FORMAT = "auxetic-sandbox packing"
 FORMAT_VERSION = 1

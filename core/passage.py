@@ -7,13 +7,11 @@ whose centre has come past a face is pushed on to the other side.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.observables import RigidContacts
 from core.packing import Packing
 from core.rigid_contacts import EDGE
-
-Floats = NDArray[np.float64]
 
 
 def deep_grains(packing: Packing, contacts: RigidContacts, step: float) -> set[int]:

@@ -10,11 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import fire
+from core.arrays import Floats
 from core.jit import kernel
 from core.relaxation import Relaxation
 from core.sweeps import farthest
-
-Floats = NDArray[np.float64]
 
 
 @kernel

@@ -16,55 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
+from core.arrays import Floats
 from core.coincidence import part_coincident
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
-from core.hand import CELL, MACHINE, SLACK, Push, check_strength, force_on_body, force_on_box
+from core.hand import CELL, SLACK, Push, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
-from core.relaxation import (
-    DEFAULT_SKIN,
-    DEFAULT_TOLERANCE,
-    FAILED,
-    Relaxation,
-    Report,
-    StopReason,
-)
+from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point, RigidWorld
-
-Floats = NDArray[np.float64]
-
-DEFAULT_STEP = 0.05  # [R]
-DEFAULT_FORCE_FLOOR = (
-    1e-2  # [k R] of the mean contact force; below it a residual is no longer relative to that
-)
-LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a body past a grain
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How far a hand moves a body in one increment, ``step`` [R], how hard, ``hand_strength`` [k R], and how carefully to relax.
-
-    ``force_floor`` [k] and ``skin`` are multiplied by the largest rest radius: what is done is the same in all units of length.
-    """
-
-    step: float = DEFAULT_STEP
-    tolerance: float = DEFAULT_TOLERANCE
-    force_floor: float = DEFAULT_FORCE_FLOOR
-    skin: float = DEFAULT_SKIN
-    max_iterations: int = 8_000
-    threads: int = 1
-    hand_strength: float = MACHINE
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.step <= LONGEST_STEP:
-            raise InputError(f"the increment must be greater than 0 and at most {LONGEST_STEP} R")
-        if self.max_iterations < 1:
-            raise InputError("an increment needs at least one iteration")
-        if not (self.tolerance > 0.0 and self.force_floor > 0.0 and 0.0 < self.skin < math.inf):
-            raise InputError("the tolerance, the force floor and the skin must be greater than 0")
-        check_strength(self.hand_strength)
+from core.settings import LONGEST_STEP, Settings
 
 
 @dataclass(frozen=True)

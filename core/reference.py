@@ -13,12 +13,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.packing import Packing, PeriodicBox
 from core.rigid_contacts import DISC, EDGE
 
-Floats = NDArray[np.float64]
 Vector = tuple[float, float]
 
 

@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.arrays import Floats
 from core.packing import Packing
 from core.reference import (
     Contact,
-    Floats,
     Vector,
     ellipses,
     grain_contact,

@@ -19,10 +19,10 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InputError
 from core.rigid_contacts import COLUMNS, DISC, EDGE, VERTEX
 
-Floats = NDArray[np.float64]
 Point = tuple[float, float]
 Role = Literal["wall", "piston", "intruder", "body"]
 

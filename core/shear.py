@@ -6,11 +6,9 @@ Haver et al., doi:10.1073/pnas.2317915121, appendices "Numerical shearing setup"
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InputError
-
-Floats = NDArray[np.float64]
 
 
 def plate_stress(reaction: Floats, width: float) -> tuple[float, float]:

@@ -10,6 +10,8 @@ from core.errors import InputError
 
 Value = float | int | bool
 
+LARGEST_SEED = 2**63 - 1
+
 
 def shown(value: object) -> str:
     """What somebody gave, for a message: in full if it is short."""
@@ -17,6 +19,15 @@ def shown(value: object) -> str:
         return reprlib.repr(value)
     except ValueError:  # a whole number of more digits than Python writes out
         return "a number without end"
+
+
+def check_seed(seed: object) -> int:
+    """A seed is a whole number from 0 to 2⁶³ − 1. Raises InputError otherwise."""
+    if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed <= LARGEST_SEED:
+        raise InputError(
+            f"the seed must be 0 or a positive whole number below 2^63, not {shown(seed)}"
+        )
+    return seed
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 from typing import TypeVar
 
-from core.errors import InputError
+from core.errors import InputError, nearest
 from scenes.scene import Scene
 
 _MODULES = (
@@ -44,8 +43,8 @@ def get(name: str) -> Scene:
     """The scene of that name. Raises InputError with the closest match."""
     _load()
     if name not in _SCENES:
-        close = difflib.get_close_matches(name, _SCENES, n=1)
-        hint = f"did you mean {close[0]}?" if close else f"there are: {', '.join(_SCENES)}"
+        close = nearest(name, _SCENES)
+        hint = f"did you mean {close}?" if close else f"there are: {', '.join(_SCENES)}"
         raise InputError(f"no scene is called {name!r}; {hint}")
     return _SCENES[name]
 

@@ -5,7 +5,6 @@ The same scene serves the window, films, tests and studies. It is a list of ingr
 
 from __future__ import annotations
 
-import difflib
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -16,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import observables
-from core.errors import InputError
+from core.errors import InputError, nearest
 from core.friction import Friction
 from core.generate import KINDS, Recipe, inside
-from core.hand import MACHINE
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Increment, Settings
+from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from core.settings import MACHINE, Settings
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
 from scenes.parameter import Parameter, Value
@@ -206,8 +205,8 @@ class Scene(ABC):
         by_name = {p.name: p for p in self.parameters}
         for name, value in (overrides or {}).items():
             if name not in by_name:
-                close = difflib.get_close_matches(name, by_name, n=1)
-                hint = f"did you mean {close[0]}?" if close else f"there are: {', '.join(by_name)}"
+                close = nearest(name, by_name)
+                hint = f"did you mean {close}?" if close else f"there are: {', '.join(by_name)}"
                 raise InputError(f"scene {self.name} has no parameter {name!r}; {hint}")
             values[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)

@@ -15,8 +15,8 @@ from core import observables
 from core.errors import InputError
 from core.material import area_modulus
 from core.packing import Packing
-from core.quasistatic import LONGEST_STEP, Settings
 from core.rigid import Point, RigidBody, RigidWorld
+from core.settings import LONGEST_STEP, Settings
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (

@@ -11,8 +11,8 @@ import numpy as np
 
 from core.exact import approximate_distance, contact_distance, parallel_expansion
 from core.packing import Packing
-from core.quasistatic import Settings
 from core.rigid import Point, RigidBody, RigidWorld
+from core.settings import Settings
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (

@@ -48,6 +48,99 @@ def test_all_packages_were_looked_at() -> None:
     assert {path.relative_to(REPOSITORY).parts[0] for path in MODULES} == set(LAYERS)
 
 
+def name_of(path: Path) -> str:
+    """Dotted name of the module in a file."""
+    return ".".join(path.relative_to(REPOSITORY).with_suffix("").parts).removesuffix(".__init__")
+
+
+NAMES = {name_of(path) for path in MODULES}
+
+
+def own_imports(path: Path) -> dict[str, int]:
+    """The project's modules that a file imports anywhere, late ones and those for types alone too, with a line of each."""
+    found: dict[str, int] = {}
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            whole = [f"{node.module}.{alias.name}" for alias in node.names]
+            names = [name if name in NAMES else str(node.module) for name in whole]
+        else:
+            continue
+        found.update({name: node.lineno for name in names if name in NAMES})
+    return found
+
+
+IMPORTS = {name_of(path): own_imports(path) for path in MODULES}
+
+
+def circle_through(start: str) -> list[str]:
+    """The shortest way of imports from a module back to itself, or nothing."""
+    ways = [[start]]
+    seen: set[str] = set()
+    for way in ways:
+        for name in IMPORTS[way[-1]]:
+            if name == start:
+                return [*way, start]
+            if name not in seen:
+                seen.add(name)
+                ways.append([*way, name])
+    return []
+
+
+# Each room, and those below it that it may import. A room within another is told from it where it may import less.
+STUDY = "studies.common session draw scenes core"
+ROOMS = {
+    "cli": "window studies.accuracy studies.stability studies.paper studies.bench studies.hand "
+    "studies.common record files session words scenes core",
+    "window": "window.solvers record files draw lessons session words scenes core",
+    "window.solvers": "files session words scenes core",
+    "record": "files draw session scenes core",
+    "studies.accuracy": STUDY,
+    "studies.stability": STUDY,
+    "studies.paper": STUDY,
+    "studies.bench": STUDY,
+    "studies.hand": f"lessons {STUDY}",
+    "studies.common": "core",
+    "lessons": "session scenes core",
+    "files": "session scenes core",
+    "draw": "draw.raster session words scenes core",
+    "draw.raster": "core",
+    "session": "scenes core",
+    "words": "scenes core",
+}
+HALL = {
+    "sandbox",
+    "sandbox.bars",
+    "sandbox.environment",
+    "sandbox.interrupts",
+}  # in no room: for all in sandbox
+
+
+def room_of(name: str) -> str:
+    """The innermost room that a module is in; the first part of its name if it is in none."""
+    inside = name.removeprefix("sandbox.")
+    rooms = [room for room in ROOMS if f"{inside}.".startswith(f"{room}.")]
+    return max(rooms, key=len, default=name.partition(".")[0])
+
+
+@pytest.mark.parametrize("name", sorted(name for name in NAMES if name.startswith("sandbox.")))
+def test_imports_run_downhill(name: str) -> None:
+    own = room_of(name)
+    if own == "sandbox":  # no room, and none is needed
+        allowed = {"core", "cli"} if name == "sandbox.__main__" else {"core"}
+    else:
+        allowed = {own, *ROOMS[own].split()}
+    for other, line in IMPORTS[name].items():
+        assert other in HALL or room_of(other) in allowed, f"{name}:{line} imports {other}"
+
+
+@pytest.mark.parametrize("name", sorted(NAMES))
+def test_no_circle_of_imports(name: str) -> None:
+    way = circle_through(name)
+    assert not way, " imports ".join(way)
+
+
 def loaded_after(code: str) -> set[str]:
     """Top-level packages that a fresh Python holds after ``code``."""
     done = subprocess.run(
@@ -85,4 +178,4 @@ def test_command_line_starts_light() -> None:
         "matplotlib",
         "tqdm",
     }
-    assert not loaded_after("import sandbox.cli") & heavy
+    assert not loaded_after("import sandbox.cli.main") & heavy

@@ -8,8 +8,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from sandbox import cli
-from sandbox.draw import words
+import pytest
+
+from sandbox.cli import main as cli
+from sandbox.words import words
 
 REPOSITORY = Path(__file__).parents[1]
 README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
@@ -53,9 +55,14 @@ def test_the_keys_are_those_of_the_help_page() -> None:
     assert keys == [key for _, rows in words.help_groups() for key, _ in rows]
 
 
-def test_links_lead_somewhere() -> None:
-    targets = re.findall(r"\]\(([^)#]+)\)", README)
+PAGES = ("README.md", "sandbox/README.md", "scenes/README.md", "assets/studies/README.md")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page: str) -> None:
+    path = REPOSITORY / page
+    targets = re.findall(r"\]\(([^)#]+)\)", path.read_text(encoding="utf-8"))
     local = [target for target in targets if "://" not in target]
     assert local
     for target in local:
-        assert (REPOSITORY / target).exists(), target
+        assert (path.parent / target).exists(), target

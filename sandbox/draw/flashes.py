@@ -11,7 +11,7 @@ import pygame
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter
 from sandbox.draw.theme import EVENT
-from sandbox.frame import Frame, IntArray
+from sandbox.session.frame import Frame, IntArray
 
 FADE = 0.3  # until nothing is left of it [s]
 WIDTH = 3.0  # of the ring at scale 1 [px]

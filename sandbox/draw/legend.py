@@ -9,15 +9,15 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from sandbox.draw import raster, words
+from core.arrays import Floats
+from sandbox.draw import raster
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, HEADING, SMALL
 from sandbox.draw.theme import AUXETIC, REGULAR, magnitude_colours, mix
 from sandbox.draw.world import Look
-from sandbox.frame import Frame
-
-Floats = NDArray[np.float64]
+from sandbox.session.frame import Frame
+from sandbox.words import words
 
 BAR, SHORT_BAR = 110.0, 60.0  # length of a scale bar at scale 1 [px]
 BAR_HEIGHT = 14.0

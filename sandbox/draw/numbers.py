@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.language import decimal_sign
+from sandbox.words.language import decimal_sign
 
 MINUS = "−"
 ONE_TWO_FIVE = (1.0, 2.0, 5.0, 10.0)

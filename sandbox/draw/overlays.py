@@ -15,8 +15,8 @@ from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.text import BODY, HEADING, SMALL
 from sandbox.draw.theme import HAND, magnitude_colours, mix
-from sandbox.draw.words import FORCE_UNIT
-from sandbox.frame import Frame, HandleState
+from sandbox.session.frame import Frame, HandleState
+from sandbox.words.words import FORCE_UNIT
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]

@@ -14,13 +14,12 @@ from typing import Literal
 import numpy as np
 import pygame
 import pygame.surfarray
-from numpy.typing import NDArray
 
+from core.arrays import Floats
 from sandbox.draw import raster
 from sandbox.draw.text import BODY, Type
 from sandbox.draw.theme import Theme
 
-Floats = NDArray[np.float64]
 Anchor = Literal["left", "centre", "right"]
 
 NO_EDGE = 0.0

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.status import draw_lamp, lamp, lamp_space
 from sandbox.draw.text import BODY, SMALL, Type
 from sandbox.draw.theme import packing_colour, packing_dash
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
+from sandbox.words import words
 
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
 SWATCH = 31.0  # of the packing's curve

@@ -8,11 +8,11 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, dashed
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
 
-Floats = NDArray[np.float64]
 Cell = tuple[float, float, float]  # width and height, inf where open, and shift of the row above
 
 

@@ -8,18 +8,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import pygame
-from numpy.typing import NDArray
 
-from sandbox.draw import words
+from core.arrays import Floats
 from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
 from sandbox.draw.text import BODY, SMALL
 from sandbox.draw.theme import HAND, mix
-from sandbox.draw.widgets_scale import shown
-from sandbox.history import Event
-
-Floats = NDArray[np.float64]
+from sandbox.draw.widgets.scale import shown
+from sandbox.session.history import Event
+from sandbox.words import words
 
 LEAST_FORCE = 0.01  # the axis goes at least this far: it makes no show of rounding noise [k R]
 WIDTH, FAINT_WIDTH = 2.2, 1.3  # of curves at scale 1 [px]

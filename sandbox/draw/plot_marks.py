@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
+from sandbox.words import words
 
 MARK = 6.0  # half the size of an event's mark at scale 1 [px]
 SWATCH = 31.0  # length of the line before a name at scale 1 [px]

@@ -11,8 +11,6 @@ import pygame
 import pygame.surfarray
 from numpy.typing import NDArray
 
-from sandbox.curves import Kept
-from sandbox.draw import words
 from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flash, draw_flash
 from sandbox.draw.layout import Layout, layout
@@ -37,7 +35,8 @@ from sandbox.draw.text import Type
 from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
 from sandbox.draw.views import VIEWS, view_named
 from sandbox.draw.world import Look, draw_bodies, draw_grains
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
+from sandbox.words import words
 
 LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
 MARGIN = 14.0  # round the scene at scale 1 [px]
@@ -262,9 +261,3 @@ def curve_of(frame: Frame) -> Curve:
         events=frame.events,
         ahead=ahead,
     )
-
-
-def kept_curve(kept: Kept) -> Curve:
-    """The curve of an earlier run."""
-    colour, dash = packing_colour(kept.packing), packing_dash(kept.packing)
-    return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)

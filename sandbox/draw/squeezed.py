@@ -10,7 +10,7 @@ from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter
 from sandbox.draw.periodic import cell_rect
 from sandbox.draw.world import places
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
 
 # At scale 1 [px].
 LEAST, MOST = 4.0, 12.0  # half a stroke across and up: seen from the back row

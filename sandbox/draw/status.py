@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.numbers import percent
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY
 from sandbox.draw.theme import Theme, mix
-from sandbox.frame import CONVERGED, Frame
+from sandbox.session.frame import CONVERGED, Frame
+from sandbox.words import words
 
 ROUGH = 0.5  # an estimated error of the force on the handle above which settled is not yet green
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import SHAPES
 from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
-from sandbox.history import Event
+from sandbox.session.history import Event
+from sandbox.words import words
 
 NEAR = 6.0  # a pointer so near an event reads it, at scale 1 [px]
 THUMB = 9.0  # radius at scale 1 [px]

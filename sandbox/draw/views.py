@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.errors import InputError
-from sandbox.draw import words
 from sandbox.draw.theme import Theme, magnitude_colours
-from sandbox.frame import Frame
+from sandbox.session.frame import Frame
+from sandbox.words import words
 
-Floats = NDArray[np.float64]
 Colours = NDArray[np.uint32]
 Colouring = Callable[[Theme, Floats], Colours]
 

@@ -8,6 +8,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.squeezed import AUXETIC_AREA
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
@@ -15,9 +16,7 @@ from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
 from sandbox.draw.views import KIND, View
-from sandbox.frame import BodyShape, Frame
-
-Floats = NDArray[np.float64]
+from sandbox.session.frame import BodyShape, Frame
 
 OUTLINE = 1.5  # width on screen at scale 1 [px]
 FADED = 0.35  # how far grains recede into the ground when force chains are shown

@@ -10,44 +10,32 @@ from collections.abc import Mapping, Sequence
 
 import pygame
 
-from core.errors import InputError
-from sandbox import autosave
-from sandbox.autosave import Leftover
-from sandbox.commands import Command
-from sandbox.draw import words
-from sandbox.draw.cards import draw_error
-from sandbox.draw.render import Renderer
-from sandbox.draw.splash import draw_splash
+from sandbox.draw.pages.cards import draw_error
+from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.warmup import Warmup
-from sandbox.scene_file import SceneFile
+from sandbox.files import autosave
+from sandbox.session.beginning import SceneFile
 from sandbox.window.actions import Actions
-from sandbox.window.arrows import Arrows
-from sandbox.window.begin import Beginnings
-from sandbox.window.brush import Brush
-from sandbox.window.canvas import Canvas
-from sandbox.window.curves import CurvesSection
-from sandbox.window.display import FRAMES, Rate, natural_scale, open_display
-from sandbox.window.files import FilesSection
-from sandbox.window.focus import Focus
-from sandbox.window.general import GeneralSection
-from sandbox.window.hand import Mouse
-from sandbox.window.help import HelpPage
-from sandbox.window.inspect import Inspector
+from sandbox.window.canvas.arrows import Arrows
+from sandbox.window.canvas.brush import Brush
+from sandbox.window.canvas.canvas import Canvas
+from sandbox.window.canvas.inspector import Inspector
+from sandbox.window.display import FRAMES, USUAL, Looks, Rate
+from sandbox.window.guide import Guide
 from sandbox.window.keys import Action, action_of
-from sandbox.window.looks import LooksSection
-from sandbox.window.menu import Menu
-from sandbox.window.notices import Notices
-from sandbox.window.panel import Panel
-from sandbox.window.parts import Part
-from sandbox.window.picture import Pane, Picture, progress_of
-from sandbox.window.record import Recorder
-from sandbox.window.run import Run
-from sandbox.window.settings import ParameterSection, Settings
-from sandbox.window.solver_thread import Snapshot
-from sandbox.window.sound import Sound
+from sandbox.window.pages import Pages
+from sandbox.window.panel.curves import CurvesSection
+from sandbox.window.panel.general import GeneralSection
+from sandbox.window.panel.looks import LooksSection
+from sandbox.window.panel.panel import Panel
+from sandbox.window.panel.parameters import ParameterSection, Wishes
+from sandbox.window.panel.scene_files import FilesSection
+from sandbox.window.picture import progress_of
+from sandbox.window.solvers.panes import Panes
+from sandbox.window.solvers.solver_thread import Snapshot
+from sandbox.window.stage import Stage
 from sandbox.window.timeline import Timeline
-from sandbox.window.tour import Guide
-from scenes.text import message
+from sandbox.words import words
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
 PATIENCE = 2.0  # with a thread that is to end [s]
@@ -61,29 +49,26 @@ def run(
     settings: Mapping[str, object] | None = None,
     *,
     log: str | os.PathLike[str] | None = None,
-    size: tuple[int, int] = (1280, 720),
-    scale: float | None = None,
-    theme: str = "dark",
-    view: str = "kind",
     packings: Sequence[str] = (),
+    looks: Looks = USUAL,
 ) -> int:
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
-    ``packings``: side by side, if any are named. ``scale`` None: by the screen's size. ``log``: where the log of the last
+    ``packings``: side by side, if any are named. ``log``: where the log of the last
     scene started is written at the end. Raises InputError without a display and for what does not exist.
     """
     sys.setswitchinterval(SWITCH)
-    own = Run(packing, seed, autosave=autosave.begin())
-    app = App(own, size=size, scale=scale, theme=theme, view=view)
+    panes = Panes(packing, seed, autosave=autosave.begin())
+    app = App(panes, looks)
     clean = False
     try:
         if scene is None:
-            app.open_menu()
+            app.pages.open_menu()
         elif isinstance(scene, SceneFile):
-            app.open(scene)
+            app.stage.open(scene)
         else:
-            app.start(scene, settings, packings)
-        while app.running:
+            app.stage.start(scene, settings, packings)
+        while app.stage.running:
             app.tick()
         clean = True
     except KeyboardInterrupt:
@@ -102,75 +87,42 @@ def run(
 
 
 class App:
-    """The window and its state; ``tick`` is one picture."""
+    """The window, put together from its parts; ``tick`` is one picture."""
 
-    def __init__(
-        self,
-        run: Run,
-        *,
-        size: tuple[int, int] = (1280, 720),
-        scale: float | None = None,
-        theme: str = "dark",
-        view: str = "kind",
-    ) -> None:
-        self.run = run
-        self.running = True
-        self.show_menu = False
-        self.show_help = False
-        self.help = HelpPage()
-        self.mouse = Mouse()
-        self.notices = Notices()
-        self.actions = Actions(self)
-        self.screen = open_display(size)
-        self.renderer = Renderer(self.screen.get_size(), scale or natural_scale(), theme, view)
-        self.picture = Picture(run, self.renderer)
-        self.recorder = Recorder()
-        self.sound = Sound()
-        self.menu = Menu()
-        self.beginnings = Beginnings(self)
-        self.guide = Guide(self)
-        self.focus = Focus(self.handle)
-        self.focus.busy = lambda: any(frame.busy for frame, _, _ in self.panes())
-        self.settings = Settings(self)
-        self.timeline = Timeline(self)
-        self.inspector = Inspector(self)
-        self.brush = Brush(self)
-        self.arrows = Arrows(self)
-        self.canvas = Canvas(self)
-        own = [
-            ParameterSection(name, self.settings)
-            for name in ("hand", "grains", "geometry", "solver")
-        ]
-        self.panel = Panel(self, folded={"solver", "files", "looks"})
+    def __init__(self, panes: Panes, looks: Looks) -> None:
+        stage = self.stage = Stage(panes, self.handle, looks)
+        self.guide = Guide(stage)
+        self.pages = Pages(stage, self.guide)
+        self.actions = Actions(stage, self.pages)
+        wishes = Wishes(stage)
+        self.timeline = Timeline(stage, self.actions)
+        self.inspector = Inspector(stage)
+        self.brush = Brush(stage)
+        arrows = Arrows(stage)
+        self.panel = Panel(stage, self.guide, folded={"solver", "files", "looks"})
         self.panel.sections += [
-            GeneralSection(self),
+            GeneralSection(stage, self.actions, self.brush, self.guide),
             self.timeline,
             self.inspector,
             self.brush,
-            *own,
+            *(ParameterSection(name, wishes) for name in ("hand", "grains", "geometry", "solver")),
+            CurvesSection(stage, self.actions),
+            FilesSection(stage, self.actions),
+            LooksSection(stage, self.actions),
         ]
-        self.panel.sections += [CurvesSection(self), FilesSection(self), LooksSection(self)]
-        self.focus.groups = [
-            self.arrows.stops,
-            self.guide.stops,
-            self.panel.stops,
-            self.timeline.stops,
-        ]
-        # While a scene runs they see events first, in this order.
-        self.parts: list[Part] = [
+        stage.focus.groups = [arrows.stops, self.guide.stops, self.panel.stops, self.timeline.stops]
+        stage.parts = [
             self.panel,
             self.timeline,
-            self.settings,
+            wishes,
             self.brush,
             self.inspector,
-            self.arrows,
+            arrows,
             self.guide,
-            self.focus,
-            self.canvas,
+            stage.focus,
+            Canvas(stage),
         ]
-        self.arrange()
         self.farewell = ""  # what is left to say when the window is closed
-        self._dirty = True  # is there something new to draw?
         self._splash = True  # is that what the window shows?
         self._drawn = 0.0
         self._serials: tuple[int, ...] = ()
@@ -181,74 +133,19 @@ class App:
         self._warmup = Warmup()
         self._warmup.start()
 
-    def start(
-        self,
-        scene: str,
-        settings: Mapping[str, object] | None = None,
-        packings: Sequence[str] = (),
-    ) -> None:
-        """Run a scene, with these packings side by side if any are named. Raises InputError for what does not exist."""
-        self.run.start(scene, settings, packings)
-        self._begin()
-
-    def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
-        """Go on where a scene file was written. Raises InputError for one that cannot be read."""
-        self.run.open(file)
-        self._begin()
-
-    def take_up(self, leftover: Leftover) -> None:
-        """Go on where a program that is gone had to stop. Raises InputError if that cannot be."""
-        self.run.take_up(leftover)
-        self._begin()
-
-    def _begin(self) -> None:
-        """Something else runs now."""
-        self.picture.forget()
-        self.mouse = Mouse()
-        self.focus.leave()
-        self.brush.on = False
-        self.renderer.forget()
-        self.menu.choose(self.run.scene)
-        self.show_menu = self.show_help = False
-        self._dirty = True
-
     def close(self, log: str | os.PathLike[str] | None = None, clean: bool = True) -> bool:
         """Close the window, end the threads, write the log; False if one is still compiling.
 
         A ``clean`` end needs no autosave.
         """
-        self.running = False
-        self.mouse.release(self.send)
-        self.sound.close()
-        self.farewell = self.recorder.close()
+        stage = self.stage
+        stage.running = False
+        stage.mouse.release(stage.send)
+        stage.sound.close()
+        self.farewell = stage.recorder.close()
         pygame.display.quit()
-        ended = self.run.close(log, clean)
+        ended = stage.panes.close(log, clean)
         return self._warmup.join(PATIENCE) and ended
-
-    def send(self, command: Command) -> None:
-        """A command to the solvers."""
-        try:
-            self.run.send(command)
-        except InputError as error:
-            self.toast(words.say(message(error)))
-        self._dirty = True
-
-    def arrange(self) -> None:
-        """Divide the window anew: the panel may have been folded."""
-        self.renderer.arrange(panel=not self.panel.drawer.folded, timeline=True)
-        self._dirty = True
-
-    def panes(self) -> tuple[Pane, ...]:
-        """What is drawn where, from the left."""
-        return self.picture.panes()
-
-    def redraw(self, changed: bool) -> None:
-        """Draw the next picture if something has changed."""
-        self._dirty |= changed
-
-    def has_begun(self) -> None:
-        """A person has found out how to begin."""
-        self.notices.hints = False
 
     # -- one picture --
 
@@ -256,159 +153,120 @@ class App:
         """Handle what has happened, draw if there is something new, wait for the next picture."""
         for event in pygame.event.get():
             self.handle(event)
-        if not self.running:
+        stage = self.stage
+        if not stage.running:
             return
-        self.mouse.send_move(self.send)
+        stage.mouse.send_move(stage.send)
         now = time.perf_counter()
-        self.run.tick()
-        snapshot = self.run.snapshot
-        serials = self.picture.serials
+        stage.panes.tick()
+        snapshot = stage.panes.snapshot
+        serials = stage.picture.serials
         if serials != self._serials:
             self._serials = serials
-            self._dirty = True
-        self._dirty |= self.notices.tick(now)
-        for part in self.parts_now():
-            self._dirty |= part.tick(now)
-        if said := self.recorder.tick(self.renderer.surface, now):
-            self.toast(said)
-        self._dirty |= self.recorder.second_passed(now)
-        moving = self._splash or self.picture.moving or self.mouse.holding
-        if self._dirty or moving or now - self._drawn >= REST:
+            stage.dirty = True
+        stage.dirty |= stage.notices.tick(now)
+        for part in stage.parts_now():
+            stage.redraw(part.tick(now))
+        if said := stage.recorder.tick(stage.renderer.surface, now):
+            stage.toast(said)
+        stage.dirty |= stage.recorder.second_passed(now)
+        moving = self._splash or stage.picture.moving or stage.mouse.holding
+        if stage.dirty or moving or now - self._drawn >= REST:
             self._draw(snapshot, now)
         self._show_cursor()
         self._clock.tick(FRAMES)
 
     def _draw(self, snapshot: Snapshot, now: float) -> None:
-        self._dirty = False
+        stage, renderer = self.stage, self.stage.renderer
+        stage.dirty = False
         self._drawn = now
         self._rate.renew(now, self._clock.get_fps())
         begun = time.perf_counter()
         preparing = snapshot.phase == "building" and snapshot.frame is None
-        self._splash = not self._warmup.ready or (preparing and not self.show_menu)
+        self._splash = not self._warmup.ready or (preparing and not stage.show_menu)
         if self._splash:
             draw_splash(
-                self.renderer.surface,
-                self.renderer.theme,
-                self.renderer.type,
+                renderer.surface,
+                renderer.theme,
+                renderer.type,
                 text=_sentence(words.say(snapshot.text) or words.SPLASH_STEP),
                 fraction=snapshot.fraction,
                 seconds=now - self._begun,
             )
-        elif self.show_menu:
-            self.menu.draw(self.renderer.painter(), self.run.packing, self.notices.latest)
-            if self.show_help:
-                self.help.draw(self.renderer.painter())
         else:
-            self._draw_run(snapshot, now)
-        self.screen.blit(self.renderer.surface, (0, 0))
+            if not stage.show_menu:
+                self._draw_run(snapshot, now)
+            self.pages.draw()
+        stage.screen.blit(renderer.surface, (0, 0))
         self._draw_indicator()
         pygame.display.flip()
         self._rate.drew(time.perf_counter() - begun)
 
     def _draw_run(self, snapshot: Snapshot, now: float) -> None:
+        stage, renderer = self.stage, self.stage.renderer
         if snapshot.frame is None:
-            self.renderer.clear()
+            renderer.clear()
         else:
-            progress = "" if self.run.comparing else progress_of(snapshot)
-            self.picture.draw(
-                hand=self.mouse.hand,
+            progress = "" if stage.panes.comparing else progress_of(snapshot)
+            stage.picture.draw(
+                hand=stage.mouse.hand,
                 rate=self._rate.text,
-                notices=self.notices.lines(progress),
+                notices=stage.notices.lines(progress),
                 now=now,
             )
-            self.sound.play(self.picture.events)
-        painter = self.renderer.painter()
-        for part in self.parts_now():
+            stage.sound.play(stage.picture.events)
+        painter = renderer.painter()
+        for part in stage.parts_now():
             part.draw(painter)
         painter.flush()
         if snapshot.phase == "failed":
-            draw_error(self.renderer.painter(), words.say(snapshot.error))
-        if self.show_help:
-            self.help.draw(self.renderer.painter())
+            draw_error(renderer.painter(), words.say(snapshot.error))
 
     def _draw_indicator(self) -> None:
         """On the screen only, so that it is not in the film."""
-        last, inset = self.renderer.bodies[-1], round(10 * self.renderer.scale)
+        renderer = self.stage.renderer
+        last, inset = renderer.bodies[-1], round(10 * renderer.scale)
         corner = last.right - inset, last.top + inset
-        self.recorder.draw(self.screen, corner, self.renderer.theme, self.renderer.type)
+        self.stage.recorder.draw(self.stage.screen, corner, renderer.theme, renderer.type)
 
     def _show_cursor(self) -> None:
         wanted = pygame.SYSTEM_CURSOR_ARROW
-        if self.show_menu and not self.show_help:
-            wanted = self.menu.cursor()
-        elif not self.show_help:
-            own = (part.cursor() for part in self.parts_now())
+        if self.stage.show_menu and not self.stage.show_help:
+            wanted = self.pages.menu.cursor()
+        elif not self.stage.show_help:
+            own = (part.cursor() for part in self.stage.parts_now())
             wanted = next((cursor for cursor in own if cursor is not None), wanted)
         if wanted != self._cursor:
             self._cursor = wanted
             with contextlib.suppress(pygame.error):  # not every screen has these cursors
                 pygame.mouse.set_cursor(wanted)
 
-    def parts_now(self) -> list[Part]:
-        """The parts that are there now: none under a page."""
-        hidden = self.show_menu or self.show_help or self.run.snapshot.frame is None
-        return [] if hidden else self.parts
-
     # -- what a person does --
 
     def handle(self, event: pygame.event.Event) -> None:
-        """One event."""
-        self.focus.watch(event)
+        """One event: for the parts, for a page, or a key that stands for an action."""
+        stage = self.stage
+        stage.focus.watch(event)
         if event.type == pygame.QUIT:
-            self.running = False
+            stage.running = False
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):
-            self.screen = pygame.display.get_surface() or self.screen
-            self.renderer.resize(self.screen.get_size())
-        elif any(part.handle(event) for part in self.parts_now()) or (
-            self.show_menu and not self.show_help and self.menu.handle(event)
-        ):
+            stage.screen = pygame.display.get_surface() or stage.screen
+            stage.renderer.resize(stage.screen.get_size())
+        elif any(part.handle(event) for part in stage.parts_now()) or self.pages.handle(event):
             pass
         elif event.type == pygame.KEYDOWN:
-            action = action_of(event)
-            if action is not None:
-                self.act(action)
+            self._act(action_of(event))
         elif event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
-            if self.show_help:
-                self.show_help = event.type != pygame.MOUSEBUTTONDOWN
-            elif self.show_menu:
-                self._mouse_in_menu(event)
-        elif event.type == pygame.MOUSEWHEEL and (self.show_menu or self.show_help):
-            page = self.help if self.show_help else self.menu
-            page.wheel(event.precise_y, round(60 * self.renderer.scale))
+            self._act(self.pages.mouse(event))
         elif event.type == pygame.WINDOWFOCUSLOST:
-            self.mouse.release(self.send)
+            stage.mouse.release(stage.send)
         elif event.type not in (pygame.WINDOWEXPOSED, pygame.WINDOWFOCUSGAINED):
             return
-        self._dirty = True
+        stage.dirty = True
 
-    def _mouse_in_menu(self, event: pygame.event.Event) -> None:
-        if event.type == pygame.MOUSEMOTION:
-            self.menu.hover(event.pos)
-        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            self.beginnings.take(self.menu.click(event.pos))
-
-    def act(self, action: Action) -> None:
-        """What a key or a button asks for."""
-        self.actions.act(action)
-
-    def toast(self, text: str) -> None:
-        """A notice of the window's own, for a moment."""
-        self.notices.say(text)
-        self._dirty = True
-
-    def open_menu(self) -> None:
-        """Show the scenes; what runs is held meanwhile."""
-        self.mouse.release(self.send)
-        self.run.hold()
-        self.show_menu, self.show_help = True, False
-        self.beginnings.look_for_leftovers()
-        self.menu.open(self.run.scene if self.run.exists else "")
-        self._dirty = True
-
-    def forget_picture(self) -> None:
-        """The scene is to be built anew: nothing is held, the scales begin afresh."""
-        self.mouse.forget()
-        self.renderer.forget()
+    def _act(self, action: Action | None) -> None:
+        if action is not None:
+            self.actions.act(action)
 
 
 def _sentence(text: str) -> str:

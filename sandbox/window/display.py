@@ -5,18 +5,32 @@ from __future__ import annotations
 import io
 import os
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import pygame
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.draw import words
+from sandbox.words import words
 
 FRAMES = 60  # pictures a second, at most
 SMALLEST = (480, 360)  # window [px]
 SLOW = 0.8  # fewer than this share of FRAMES is explained
 NO_DISPLAY = "no display to open a window on: record a film with record SCENE --out FILE.mp4"
+
+
+@dataclass(frozen=True)
+class Looks:
+    """How the window looks at first."""
+
+    size: tuple[int, int] = (1280, 720)  # [px]
+    scale: float | None = None  # of letters and controls; None: by the screen's size
+    theme: str = "dark"
+    view: str = "kind"
+
+
+USUAL = Looks()
 
 
 def open_display(size: tuple[int, int]) -> pygame.Surface:

@@ -10,15 +10,16 @@ import pygame
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.curves import CurveTable, Kept
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot import draw_plot
-from sandbox.draw.render import curve_of, kept_curve
+from sandbox.draw.render import curve_of
 from sandbox.draw.text import HEADING, Type
 from sandbox.draw.theme import LIGHT
-from sandbox.frame import Frame
-from sandbox.views.data import write_csv
+from sandbox.files.table import write_csv
+from sandbox.session.frame import Frame
+from sandbox.window.picture import kept_curve
+from sandbox.window.solvers.kept_curves import CurveTable, Kept
+from sandbox.words import words
 from scenes.text import message
 
 SIZE, SCALE = (1920, 1080), 2.0  # of the picture [px], and of its letters

@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import pygame
 
-from sandbox.commands import Command, Grab, Move, Release
 from sandbox.draw.camera import Camera
 from sandbox.draw.overlays import Hand
-from sandbox.frame import Frame, HandleState
+from sandbox.session.commands import Command, Grab, Move, Release
+from sandbox.session.frame import Frame, HandleState
 
 REACH = 24.0  # a handle can be taken from at least this far at scale 1 [px]
 

@@ -8,9 +8,8 @@ from pathlib import Path
 
 import pygame
 
-from sandbox import language
-from sandbox.draw import menu_layout, words
-from sandbox.draw.menu_layout import (
+from sandbox.draw.pages import menu_layout
+from sandbox.draw.pages.menu_layout import (
     DISCARD,
     FILE,
     KEYS,
@@ -26,10 +25,11 @@ from sandbox.draw.menu_layout import (
     Contents,
     MenuLayout,
 )
-from sandbox.draw.menu_page import draw_menu
+from sandbox.draw.pages.menu_page import draw_menu
 from sandbox.draw.painter import Painter
-from sandbox.scenes_here import SceneHere, scenes_here
+from sandbox.files.scene_file import SceneHere, scenes_here
 from sandbox.window.keys import Action
+from sandbox.words import language, words
 from scenes import registry
 
 ARROWS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from sandbox.draw import words
+from sandbox.words import words
 
 STAY = 2.5  # of a notice [s]
 

@@ -7,23 +7,26 @@ from collections.abc import Sequence
 
 import pygame
 
-from sandbox.draw import words
 from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flashes
 from sandbox.draw.overlays import Hand
-from sandbox.draw.render import Renderer, kept_curve
-from sandbox.frame import Frame
-from sandbox.window.run import Run
-from sandbox.window.solver_thread import Snapshot
+from sandbox.draw.plot import Curve
+from sandbox.draw.render import Renderer
+from sandbox.draw.theme import packing_colour, packing_dash
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.kept_curves import Kept
+from sandbox.window.solvers.panes import Panes
+from sandbox.window.solvers.solver_thread import Snapshot
+from sandbox.words import words
 
-Pane = tuple[Frame, Camera, pygame.Rect]
+Drawn = tuple[Frame, Camera, pygame.Rect]
 
 
 class Picture:
     """Draws what the solvers have published."""
 
-    def __init__(self, run: Run, renderer: Renderer) -> None:
-        self._run, self._renderer = run, renderer
+    def __init__(self, panes: Panes, renderer: Renderer) -> None:
+        self._panes, self._renderer = panes, renderer
         self._flashes = Flashes()
         self._lit = False
         self.events: tuple[str, ...] = ()  # kinds of those that were new in the latest picture
@@ -31,22 +34,22 @@ class Picture:
     @property
     def moving(self) -> bool:
         """Does the picture change by itself?"""
-        busy = any(seen.phase in ("building", "catching up") for seen in self._run.snapshots)
+        busy = any(seen.phase in ("building", "catching up") for seen in self._panes.snapshots)
         return busy or self._lit
 
     @property
     def serials(self) -> tuple[int, ...]:
         """Changes when there is something new to show."""
-        return tuple(seen.serial for seen in self._run.snapshots)
+        return tuple(seen.serial for seen in self._panes.snapshots)
 
     def forget(self) -> None:
         """Other runs begin."""
         self._flashes.forget()
 
-    def panes(self) -> tuple[Pane, ...]:
+    def panes(self) -> tuple[Drawn, ...]:
         """What is drawn where, from the left."""
         places = zip(
-            self._run.snapshots, self._renderer.cameras, self._renderer.bodies, strict=False
+            self._panes.snapshots, self._renderer.cameras, self._renderer.bodies, strict=False
         )
         return tuple(
             (seen.frame, camera, rect) for seen, camera, rect in places if seen.frame is not None
@@ -61,7 +64,7 @@ class Picture:
 
     def draw(self, *, hand: Hand, rate: str, notices: Sequence[str], now: float) -> None:
         """All panes; at least one of them must have a frame."""
-        snapshots = self._run.snapshots
+        snapshots = self._panes.snapshots
         frames = [seen.frame for seen in snapshots]
         lit = self._flashes.follow(frames, now)
         self._lit, self.events = bool(lit), self._flashes.new
@@ -71,10 +74,10 @@ class Picture:
             frames,
             hand=hand,
             rate=rate,
-            paused=self._run.paused,
+            paused=self._panes.paused,
             notices=notices,
             told=[_told(seen) for seen in snapshots] if several else (),
-            kept=[kept_curve(kept) for kept in self._run.curves.shown(first)],
+            kept=[kept_curve(kept) for kept in self._panes.curves.shown(first)],
             flashes=lit,
         )
 
@@ -91,6 +94,12 @@ def progress_of(snapshot: Snapshot) -> str:
     if math.isfinite(snapshot.fraction):
         text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
     return text
+
+
+def kept_curve(kept: Kept) -> Curve:
+    """The curve of an earlier run."""
+    colour, dash = packing_colour(kept.packing), packing_dash(kept.packing)
+    return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)
 
 
 def _told(snapshot: Snapshot) -> tuple[str, ...]:

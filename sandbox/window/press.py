@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pygame
 
-from sandbox.draw.widgets import (
+from sandbox.draw.widgets.controls import (
     Button,
     Choice,
     Heading,

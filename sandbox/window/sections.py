@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
-from sandbox.draw import words
-from sandbox.draw.widgets import Control
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.draw.widgets.controls import Control
+from sandbox.window.actions import Actions
+from sandbox.window.stage import Stage
+from sandbox.words import words
 
 Value = float | int | bool | str
 
@@ -36,13 +35,13 @@ class Section(Protocol):
         """A control got a value: True for a button, typed text as it is. Not ``done``: the drag goes on."""
 
 
-class AppSection:
+class StageSection:
     """What the sections about the window itself share: a heading by their name, and that they are always there."""
 
     name: str
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage, actions: Actions) -> None:
+        self.stage, self.actions = stage, actions
 
     @property
     def title(self) -> str:

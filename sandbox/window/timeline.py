@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import pygame
 
-from sandbox.commands import Recall, Redo, Undo
-from sandbox.draw import words
 from sandbox.draw.painter import Painter
 from sandbox.draw.timeline import Bar, draw_bar, draw_plate
-from sandbox.draw.widgets import (
+from sandbox.draw.widgets.controls import (
     Button,
     Choice,
     Control,
@@ -23,16 +20,17 @@ from sandbox.draw.widgets import (
     Simple,
     parts_of,
 )
-from sandbox.draw.widgets_look import Attention, draw_control, draw_ring
-from sandbox.frame import Frame
+from sandbox.draw.widgets.look import Attention, draw_control, draw_ring
+from sandbox.session.commands import Recall, Redo, Undo
+from sandbox.session.frame import Frame
+from sandbox.window.actions import Actions
 from sandbox.window.display import FRAMES
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.press import keyed, pressed
 from sandbox.window.sections import Value
-
-if TYPE_CHECKING:
-    from sandbox.window.app import App
+from sandbox.window.stage import Stage
+from sandbox.words import words
 
 # Increments a picture, at most; the last one: as many as the solver manages.
 SPEEDS = (1 / 8, 1 / 4, 1 / 2, 1.0, 2.0, 4.0, math.inf)
@@ -49,8 +47,8 @@ class Timeline(Silent):
     name = "time"
     title = ""
 
-    def __init__(self, app: App) -> None:
-        self.app = app
+    def __init__(self, stage: Stage, actions: Actions) -> None:
+        self.stage, self.actions = stage, actions
         self.speed = len(SPEEDS) - 1  # index into SPEEDS
         self._wish: int | None = None  # increment to go to, not sent yet
         self._asked: int | None = None  # increment on its way
@@ -64,19 +62,19 @@ class Timeline(Silent):
     @property
     def rect(self) -> pygame.Rect:
         """Its place in the window [px]; of no height where there is no room."""
-        return self.app.renderer.layout.timeline
+        return self.stage.renderer.layout.timeline
 
     @property
     def frame(self) -> Frame | None:
         """What is shown now."""
-        return self.app.run.snapshot.frame
+        return self.stage.panes.snapshot.frame
 
     def places(self) -> Places:
         """Its controls in the window; nothing where there is no room for them."""
         line = self.rect
         if not line.height or not line.width:
             return Places((), 0)
-        scale = self.app.renderer.scale
+        scale = self.stage.renderer.scale
         gap = round(GAP * scale)
         play = pygame.Rect(line.left + gap, line.top, line.height, line.height)
         step = play.move(line.height + gap // 2, 0)
@@ -92,7 +90,7 @@ class Timeline(Silent):
             Option(name, words.SPEED.format(speed=name) if name != "max" else words.SPEED_MOST)
             for name in SPEED_NAMES
         )
-        paused = self.app.run.paused
+        paused = self.stage.panes.paused
         return (
             Button("time/play", "▶" if paused else "⏸", help=words.PLAY_HELP),
             Button("time/step", "⏭", help=words.STEP_HELP),
@@ -105,7 +103,7 @@ class Timeline(Silent):
         if not places.all or frame is None:
             return None
         left, right = places.all[1].rect.right, places.all[2].rect.left
-        pad = round(2 * GAP * self.app.renderer.scale)
+        pad = round(2 * GAP * self.stage.renderer.scale)
         rect = pygame.Rect(left + pad, self.rect.top, right - left - 2 * pad, self.rect.height)
         now = frame.increment if self._going is None else self._going
         last = max(frame.last_kept, frame.increment)
@@ -129,11 +127,11 @@ class Timeline(Silent):
         """Keys that mean time, wherever the keyboard is."""
         match action:
             case Action.UNDO:
-                self.app.mouse.forget()
-                self.app.send(Undo())
+                self.stage.mouse.forget()
+                self.stage.send(Undo())
             case Action.REDO:
-                self.app.mouse.forget()
-                self.app.send(Redo())
+                self.stage.mouse.forget()
+                self.stage.send(Redo())
             case Action.BACKWARD:
                 self.go_by(-1)
             case Action.FORWARD:
@@ -150,11 +148,11 @@ class Timeline(Silent):
         """How many increments a picture, at most."""
         self.speed = min(max(index, 0), len(SPEEDS) - 1)
         limit = SPEEDS[self.speed]
-        self.app.run.set_speed(limit * FRAMES)
+        self.stage.panes.set_speed(limit * FRAMES)
         if math.isinf(limit):
-            self.app.toast(words.SPEED_TOAST_MOST)
+            self.stage.toast(words.SPEED_TOAST_MOST)
         else:
-            self.app.toast(words.SPEED_TOAST.format(count=f"{limit * FRAMES:g}"))
+            self.stage.toast(words.SPEED_TOAST.format(count=f"{limit * FRAMES:g}"))
 
     def go_by(self, increments: int) -> None:
         """Back, or on through what is kept; beyond that one more increment."""
@@ -163,7 +161,7 @@ class Timeline(Silent):
             return
         now = frame.increment if self._going is None else self._going
         if increments == 1 and now >= frame.last_kept:
-            self.app.run.step()
+            self.stage.panes.step()
         else:
             self.go_to(now + increments)
 
@@ -171,14 +169,14 @@ class Timeline(Silent):
         """To an increment that is kept, with the next picture."""
         frame = self.frame
         if frame is None or frame.last_kept <= frame.first_kept:
-            self.app.toast(words.NOTHING_KEPT)
+            self.stage.toast(words.NOTHING_KEPT)
             return
         self._wish = min(max(increment, frame.first_kept), frame.last_kept)
-        self.app.mouse.forget()
+        self.stage.mouse.forget()
 
     def tick(self, now: float) -> bool:
         """Send where to go, once a picture."""
-        frame, serial = self.frame, self.app.run.snapshot.serial
+        frame, serial = self.frame, self.stage.panes.snapshot.serial
         # Of a long run not every increment is kept: then the solver goes to the nearest before it.
         near = serial != self._sent[1] and now - self._sent[0] > PATIENCE
         if frame is not None and (frame.increment == self._asked or near):
@@ -186,7 +184,7 @@ class Timeline(Silent):
         if self._wish is None:
             return False
         if self._asked is None or self._wish != self._asked:
-            self.app.send(Recall(self._wish))
+            self.stage.send(Recall(self._wish))
             self._asked, self._sent = self._wish, (now, serial)
         self._wish = None
         return True
@@ -198,7 +196,7 @@ class Timeline(Silent):
         if event.type == pygame.MOUSEMOTION:
             return self._motion(event)
         if event.type == pygame.MOUSEBUTTONDOWN and self.rect.collidepoint(event.pos):
-            if event.button == 1 and not self.app.mouse.holding:
+            if event.button == 1 and not self.stage.mouse.holding:
                 self._down(event.pos)
             return True
         if event.type == pygame.MOUSEBUTTONUP and self._dragging:
@@ -214,7 +212,7 @@ class Timeline(Silent):
 
     def _motion(self, event: pygame.event.Event) -> bool:
         self._pointer = event.pos
-        if self.app.mouse.holding:
+        if self.stage.mouse.holding:
             return False
         bar = self.bar()
         if self._dragging and bar is not None:
@@ -224,26 +222,26 @@ class Timeline(Silent):
         hover = "" if place is None else place.control.name
         if bar is not None and bar.rect.collidepoint(event.pos):
             hover = BAR
-        self.app.redraw(hover != self._hover or hover == BAR)
+        self.stage.redraw(hover != self._hover or hover == BAR)
         self._hover = hover
         return self.rect.collidepoint(event.pos) and not any(event.buttons)
 
     def _down(self, pos: tuple[int, int]) -> None:
         bar, place = self.bar(), self.places().at(*pos)
         if place is not None:
-            self.app.focus.go(place.control.name, False)
+            self.stage.focus.go(place.control.name, False)
             value = pressed(
-                place.control, parts_of(place.control, place.rect, self.app.renderer.type), pos
+                place.control, parts_of(place.control, place.rect, self.stage.renderer.type), pos
             )
             if value is not None:
                 self.use(place.control.name, str(value), True)
         elif bar is not None and bar.rect.inflate(round(4 * GAP), 0).collidepoint(pos):
-            self.app.focus.go(BAR, False)
+            self.stage.focus.go(BAR, False)
             self._dragging = True
             self.go_to(bar.increment_at(pos[0]))
 
     def _key(self, event: pygame.event.Event) -> bool:
-        name, frame = self.app.focus.name, self.frame
+        name, frame = self.stage.focus.name, self.frame
         if name == BAR and frame is not None:
             ways = {pygame.K_LEFT: -1, pygame.K_RIGHT: 1, pygame.K_DOWN: -1, pygame.K_UP: 1}
             ways |= {pygame.K_PAGEUP: -PAGE, pygame.K_PAGEDOWN: PAGE}
@@ -276,9 +274,9 @@ class Timeline(Silent):
         """Play, step, or another speed."""
         del done
         if name == "time/play":
-            self.app.act(Action.PAUSE)
+            self.actions.act(Action.PAUSE)
         elif name == "time/step":
-            self.app.act(Action.STEP)
+            self.actions.act(Action.STEP)
         else:
             self.set_speed(SPEED_NAMES.index(str(value)))
 
@@ -292,7 +290,7 @@ class Timeline(Silent):
         painter.fill(line, painter.theme.panel)
         thin = max(round(painter.scale), 1)
         painter.fill(pygame.Rect(line.left, line.top, line.width, thin), painter.theme.hairline)
-        focus = self.app.focus.ring
+        focus = self.stage.focus.ring
         for place in self.places().all:
             control = place.control
             draw_control(painter, place, Attention(focus, self._hover))

@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from sandbox import arguments, cli, verbs
+from sandbox.cli import arguments, verbs
+from sandbox.cli import main as cli
 
 
 @given(

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sandbox import cli
+from sandbox.cli import main as cli
 
 HEAD: dict[str, Any] = {
     "format": "auxetic-sandbox log",
@@ -177,7 +177,8 @@ def test_one_thing_is_something_else(
     remove: bool,
 ) -> None:
     """Reading refuses it in one line, or it is a log."""
-    from sandbox.log import Log, read_log
+    from sandbox.files.log_file import read_log
+    from sandbox.session.log import Log
 
     records = [dict(HEAD), dict(GRAB), dict(MOVE), dict(END)]
     if remove:
@@ -186,7 +187,7 @@ def test_one_thing_is_something_else(
         records[line][name] = value
     path = write(tmp_path / "run.jsonl", *records)
     from core.errors import InputError
-    from sandbox.session import Session
+    from sandbox.session.session import Session
 
     try:
         log = read_log(path)
@@ -208,7 +209,7 @@ def test_one_thing_is_something_else(
 @given(st.integers(0, 10**6), st.integers(1, 255), st.booleans())
 def test_one_wrong_byte_or_an_early_end(tmp_path: Path, place: int, change: int, cut: bool) -> None:
     from core.errors import InputError
-    from sandbox.log import read_log
+    from sandbox.files.log_file import read_log
 
     path = write(tmp_path / "run.jsonl", HEAD, GRAB, MOVE, END)
     content = bytearray(path.read_bytes())

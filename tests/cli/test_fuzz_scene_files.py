@@ -16,10 +16,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from sandbox import cli
-from sandbox.commands import DrawWall, Place
-from sandbox.scene_file import read_scene, write_scene
-from sandbox.session import Session
+from sandbox.cli import main as cli
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.commands import DrawWall, Place
+from sandbox.session.session import Session
 
 QUICK = 5.0  # seconds of a core: nothing was built
 ROOM = 1 << 20  # kilobytes of memory that reading may add
@@ -41,7 +41,7 @@ def parts(tmp_path_factory: pytest.TempPathFactory) -> tuple[bytes, bytes]:
         while not session.idle:
             session.advance(1000)
     path = tmp_path_factory.mktemp("made") / "made.toml"
-    write_scene(path, session)
+    write_scene(path, session.made())
     return path.read_bytes(), path.with_suffix(".npz").read_bytes()
 
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from sandbox import cli
+from sandbox.cli import main as cli
 from scenes import registry
 
 COMMANDS = ("list", "play", "record", "replay", "bench", "study")
@@ -126,8 +126,11 @@ def begin(*_: object, **__: object) -> None:
 def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Run in an empty folder, with everything that takes long replaced."""
     from sandbox import environment
-    from sandbox.studies import accuracy, bench, paper, stability
-    from sandbox.views import record, record_side_by_side
+    from sandbox.record import record
+    from sandbox.studies.accuracy import study as accuracy
+    from sandbox.studies.bench import bench
+    from sandbox.studies.common import folder as studies_folder
+    from sandbox.studies.stability import study as stability
     from sandbox.window import app
 
     folder = tmp_path_factory.mktemp("words")
@@ -141,9 +144,8 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
             (app, "run"),
             (record, "record"),
             (record, "repeat"),
-            (record_side_by_side, "record_side_by_side"),
             (bench, "run"),
-            (paper, "prepare_folder"),
+            (studies_folder, "prepare_folder"),
             (stability, "study"),
             (accuracy, "study"),
         ):

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.cli import parse
-from sandbox.commands import DrawWall, Erase, Place, Protocol
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.scene_file import write_scene
-from sandbox.session import Session
+from sandbox.cli.main import parse
+from sandbox.files.log_file import read_log, write_log
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.commands import DrawWall, Erase, Place, Protocol
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
 from tests.cli.test_commands import rows_of, sandbox, state
-from tests.sandbox.test_editing import built, do
+from tests.session.test_editing import built, do
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +21,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     session = built(grains=12)
     do(session, DrawWall(((12.0, 16.0), (18.0, 15.0))), Place(9.0, 10.0, "auxetic"))
     where = tmp_path_factory.mktemp("made")
-    write_scene(where / "made.toml", session)
+    write_scene(where / "made.toml", session.made())
     return where
 
 
@@ -32,7 +32,7 @@ def test_record_goes_on_with_the_file(folder: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert len(rows_of(folder / "made.csv")) == 41
     assert (folder / "made.png").stat().st_size > 1000
-    session = Session.from_file(folder / "made.toml")
+    session = Session.from_file(read_scene(folder / "made.toml"))
     session.build()
     session.submit(Protocol(True))
     increments = 0
@@ -44,12 +44,12 @@ def test_record_goes_on_with_the_file(folder: Path) -> None:
 
 @pytest.mark.end_to_end
 def test_a_log_of_a_file_replays_without_it(folder: Path, tmp_path: Path) -> None:
-    session = Session.from_file(folder / "made.toml")
+    session = Session.from_file(read_scene(folder / "made.toml"))
     session.build()
     grains = session.frame().grains
     do(session, DrawWall(((20.0, 5.0), (22.0, 5.0))), Erase(15.0, 15.0, 8.0))
     assert session.frame().grains < grains
-    session.write_log(str(tmp_path / "it.jsonl"))
+    write_log(tmp_path / "it.jsonl", session.log())
     done = sandbox(tmp_path, "replay", "it.jsonl")
     assert done.returncode == 0, done.stderr
     assert "the same state" in done.stdout

@@ -9,9 +9,10 @@ from core import observables
 from core.coincidence import NUDGE, part_coincident
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 
 BOX = PeriodicBox(12.0, 12.0)
 

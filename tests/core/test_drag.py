@@ -7,9 +7,10 @@ import pytest
 
 from core.errors import InputError
 from core.packing import Packing
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidWorld, wall
+from core.settings import Settings
 
 GRAVITY, FALL = 0.01, 0.1
 

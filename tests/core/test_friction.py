@@ -22,9 +22,10 @@ from core.friction import (
     settle_places,
 )
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from tests.core import examples
 
 Floats = examples.Floats

@@ -10,9 +10,10 @@ import pytest
 from core import observables
 from core.friction import TANGENTIAL_STIFFNESS, Friction
 from core.packing import Packing
-from core.quasistatic import Increment, Quasistatic, Settings
+from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point, RigidBody, RigidWorld
+from core.settings import Settings
 from tests.core import examples
 
 MU = 0.4

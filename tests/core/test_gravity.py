@@ -10,9 +10,10 @@ import pytest
 from core import fire, observables, reference_friction
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from tests.core import examples
 
 G = 0.05  # [k/R]

@@ -13,11 +13,12 @@ from core import generate
 from core.errors import InputError
 from core.friction import Friction
 from core.generate import Recipe
-from core.hand import MACHINE, SLACK, Push, force_on_body, force_on_box
+from core.hand import SLACK, Push, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Increment, Quasistatic, Settings
+from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from core.settings import MACHINE, Settings
 
 BOX: list[Point] = [(0.0, 0.0), (12.0, 0.0), (12.0, 9.0), (0.0, 9.0)]
 _PACKED: dict[tuple[str, str], Packing] = {}

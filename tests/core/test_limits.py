@@ -8,9 +8,10 @@ import pytest
 from core.errors import InputError
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains
-from core.quasistatic import Increment, Quasistatic, Settings
+from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 
 PLATE = ((-3.0, 0.0), (3.0, 0.0), (3.0, 1.0), (-3.0, 1.0))
 

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from core import observables
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Increment, Quasistatic, Settings
+from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from tests.core import examples
 
 Floats = examples.Floats

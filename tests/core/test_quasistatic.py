@@ -11,9 +11,10 @@ from core import generate, observables
 from core.errors import InputError
 from core.generate import Recipe
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import LONGEST_STEP, Increment, Quasistatic, Settings
+from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from core.settings import LONGEST_STEP, Settings
 
 BOX: list[Point] = [(0.0, 0.0), (14.0, 0.0), (14.0, 10.0), (0.0, 10.0)]
 RADIUS = 1.6

@@ -14,9 +14,10 @@ from core import fire, threads
 from core.errors import InputError
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Quasistatic, Settings
+from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
+from core.settings import Settings
 from core.sweeps import CHUNK
 from tests.core import examples
 

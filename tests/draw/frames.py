@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sandbox.frame import BodyShape, Contacts, Frame, HandleState
+from sandbox.session.frame import BodyShape, Contacts, Frame, HandleState
 
 Floats = NDArray[np.float64]
 

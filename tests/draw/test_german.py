@@ -7,14 +7,14 @@ from collections.abc import Iterator
 import pygame
 import pytest
 
-from sandbox import language, tours
-from sandbox.draw import words
-from sandbox.draw.help_page import draw_help
+from sandbox.draw.pages.help_page import draw_help
+from sandbox.draw.pages.tour_card import TourPage, card_layout, draw_tour_card
 from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
-from sandbox.draw.tour_card import TourPage, card_layout, draw_tour_card
 from sandbox.draw.views import VIEWS
+from sandbox.lessons import tours
 from sandbox.window.menu import Menu
+from sandbox.words import language, words
 from tests.draw.frames import hopper_frame, intruder_frame
 
 SIZES = [(1280, 720), (1920, 1080)]

@@ -11,13 +11,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sandbox.draw.camera import Camera
-from sandbox.draw.cards import draw_error
-from sandbox.draw.help_page import draw_help
 from sandbox.draw.layout import SEAM, layout
-from sandbox.draw.menu_layout import SCENE, Card, Chip, Contents, menu_layout
-from sandbox.draw.menu_page import draw_menu
+from sandbox.draw.pages.cards import draw_error
+from sandbox.draw.pages.help_page import draw_help
+from sandbox.draw.pages.menu_layout import SCENE, Card, Chip, Contents, menu_layout
+from sandbox.draw.pages.menu_page import draw_menu
+from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.render import Renderer
-from sandbox.draw.splash import draw_splash
 from sandbox.draw.text import Type
 from tests.draw.frames import empty_frame, hopper_frame, intruder_frame
 

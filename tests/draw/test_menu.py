@@ -9,12 +9,12 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.draw.menu_layout import SCENE, START, Card, Chip, Contents
-from sandbox.draw.menu_page import BANNER_PICTURES, draw_menu
+from sandbox.draw.pages.menu_layout import SCENE, START, Card, Chip, Contents
+from sandbox.draw.pages.menu_page import BANNER_PICTURES, draw_menu
+from sandbox.draw.pages.thumbnail import fitted, path_of
 from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.theme import channels, theme_named
-from sandbox.draw.thumbnail import fitted, path_of
 from scenes import registry
 from tests.draw.test_render import GOLDEN
 from tests.draw.test_side_by_side import without_text

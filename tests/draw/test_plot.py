@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sandbox.draw.painter import dashed
 from sandbox.draw.plot import Curve, finite_part, limits, thinned
 from sandbox.draw.render import Renderer
-from sandbox.frame import Ahead, Frame
+from sandbox.session.frame import Ahead, Frame
 from tests.draw.frames import curve, intruder_frame
 
 

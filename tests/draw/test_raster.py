@@ -278,7 +278,7 @@ def test_warmup_compiles_what_drawing_uses() -> None:
     ]
     before = [len(kernel.signatures) for kernel in kernels]
     from sandbox.draw.render import Renderer
-    from sandbox.draw.words import VIEWS
+    from sandbox.words.words import VIEWS
     from tests.draw.frames import hopper_frame, intruder_frame, periodic_frame
 
     for frame in (intruder_frame(8), hopper_frame(), periodic_frame()):

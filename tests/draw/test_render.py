@@ -16,14 +16,14 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
-from sandbox.draw import words
 from sandbox.draw.overlays import Hand
 from sandbox.draw.render import Renderer
 from sandbox.draw.status import lamp
 from sandbox.draw.text import Type
 from sandbox.draw.theme import AUXETIC, DARK, HAND, LIGHT, REGULAR, Theme, channels
 from sandbox.draw.views import VIEWS
-from sandbox.frame import Contacts, Frame
+from sandbox.session.frame import Contacts, Frame
+from sandbox.words import words
 from tests.draw.frames import empty_frame, hopper_frame, intruder_frame
 
 GOLDEN = Path(__file__).parent / "golden"

@@ -14,16 +14,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.curves import Curves
-from sandbox.draw import words
 from sandbox.draw.flashes import FADE, Flashes
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import spread
-from sandbox.draw.render import Renderer, kept_curve
+from sandbox.draw.render import Renderer
 from sandbox.draw.status import worst
 from sandbox.draw.theme import DARK, EVENT, channels
-from sandbox.frame import Frame
-from sandbox.history import Event
+from sandbox.session.frame import Frame
+from sandbox.session.history import Event
+from sandbox.window.picture import kept_curve
+from sandbox.window.solvers.kept_curves import Curves
+from sandbox.words import words
 from tests.draw.frames import curve, empty_frame, hopper_frame, intruder_frame
 from tests.draw.test_layout import SCALES, SIZES, check
 from tests.draw.test_render import GOLDEN, LEVELS, silent

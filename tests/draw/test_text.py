@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from sandbox import language
 from sandbox.draw import text
 from sandbox.draw.text import BODY, SMALL, Type, font_path, page_scale
+from sandbox.words import language
 
 
 def test_fonts_and_their_licence_are_there() -> None:

@@ -14,11 +14,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sandbox import language
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import Type
 from sandbox.draw.theme import MIXED, THEMES, contrast, mix, theme_named
-from sandbox.draw.widgets import (
+from sandbox.draw.widgets.controls import (
     TARGET,
     Button,
     Choice,
@@ -37,9 +36,10 @@ from sandbox.draw.widgets import (
     parts_of,
     slid_to,
 )
-from sandbox.draw.widgets_look import Attention, ring_colour
-from sandbox.draw.widgets_panel import foot_height, panel_picture
-from sandbox.draw.widgets_scale import Range, shown, typed
+from sandbox.draw.widgets.look import Attention, ring_colour
+from sandbox.draw.widgets.panel_frame import foot_height, panel_picture
+from sandbox.draw.widgets.scale import Range, shown, typed
+from sandbox.words import language
 from scenes import registry
 
 GOLDEN = Path(__file__).parent / "golden"

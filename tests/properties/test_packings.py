@@ -13,8 +13,8 @@ from core import observables
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation, Report, StopReason
 from core.rigid import RigidWorld
-from sandbox.studies import stability_rigs as rigs
-from sandbox.studies.stability_watch import Watch
+from sandbox.studies.stability import rigs
+from sandbox.studies.stability.watch import Watch
 
 BOUNDED = settings(max_examples=25, deadline=None, derandomize=True)
 SIDE = 9.0

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sandbox.commands import (
+from sandbox.files.log_file import read_log, write_log
+from sandbox.session.commands import (
     Change,
     Command,
     DrawWall,
@@ -28,11 +29,10 @@ from sandbox.commands import (
     Retype,
     Undo,
 )
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.session import Session
-from sandbox.studies.stability_scenes import small
-from sandbox.studies.stability_watch import Watch
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
+from sandbox.studies.stability.scenes import small
+from sandbox.studies.stability.watch import Watch
 from scenes import registry
 
 SCENES = registry.names()
@@ -116,7 +116,7 @@ def test_any_sequence_of_commands(name: str, data: st.DataObject, tmp_path: Path
     handle = session.run.setup.handles[0].body
     obey(session, watch, [(Grab(handle), 0), (Move(handle, 3.0, 3.0), 3), *steps])
     path = tmp_path / "run.jsonl"
-    session.write_log(str(path))
+    write_log(path, session.log())
     log = read_log(path)
     again = list(replay(log, slice_iterations=97))[-1]
     assert again.state_hash() == log.hash == session.state_hash()

@@ -7,8 +7,8 @@ import pytest
 
 from core import observables
 from core.avalanches import force_changes, participation
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.session import Session
 from scenes.avalanches import LEAST_DROP, pressure, shear_stress, taking_part
 
 PRESSURE = 0.06

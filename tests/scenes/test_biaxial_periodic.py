@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core import observables
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.session import Session
 
 
 def squeeze(kind: str, grains: int = 200) -> np.ndarray:

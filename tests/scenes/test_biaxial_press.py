@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.session import Session
 
 KINDS = ("regular", "mixed", "auxetic")
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from core.shear import shear_modulus
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.session import Session
 from scenes import registry
 from scenes.couette import plate_stresses
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sandbox.commands import Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
 from scenes.grain_row import expected_slope
 
 

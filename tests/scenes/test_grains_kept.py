@@ -8,8 +8,8 @@ import pytest
 from core.generate import inside
 from core.packing import Packing
 from core.rigid import Point
-from sandbox.commands import Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
 from scenes.scene import Check
 
 KEPT = "no grain is lost and none has passed a wall"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.log import read_log
-from sandbox.replay import replay
-from sandbox.session import Session
+from sandbox.files.log_file import read_log, write_log
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.replay import replay
+from sandbox.session.session import Session
 from scenes.scene import Check, Track
 
 
@@ -90,7 +90,7 @@ def test_a_film_of_shaking_is_the_same_when_replayed(tmp_path: object) -> None:
     while session.finished < 40:
         session.advance(500)
     path = f"{tmp_path}/run.jsonl"
-    session.write_log(path)
+    write_log(path, session.log())
     states = list(replay(read_log(path)))
     assert states[-1].state_hash() == session.state_hash()
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
 from scenes import registry
 from scenes.scene import STRONGEST
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.observables import force_drops
-from sandbox.commands import Protocol
-from sandbox.session import Session
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
 from scenes.scene import STRONGEST
 
 STROKE = 7.0  # [R]: three and a half diameters, some ten force drops

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Protocol, Reset
-from sandbox.frame import Frame
-from sandbox.session import Session
+from sandbox.session.commands import Protocol, Reset
+from sandbox.session.frame import Frame
+from sandbox.session.session import Session
 from scenes import registry
 from scenes.parameter import Parameter
 from scenes.scene import Scene

@@ -10,9 +10,9 @@ import pytest
 
 from core import material
 from core.errors import InputError
-from sandbox.commands import Grab, Move, Protocol
-from sandbox.frame import Frame
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.frame import Frame
+from sandbox.session.session import Session
 
 PAPER = (0.01, 0.1, 1.0, 10.0, 100.0)
 TINY = 1e-3  # strain at which the response is linear to within about itself

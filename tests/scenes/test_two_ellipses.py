@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.commands import Grab, Move, Protocol, Release, Reset
-from sandbox.session import Session
+from sandbox.session.commands import Grab, Move, Protocol, Release, Reset
+from sandbox.session.session import Session
 
 
 def ellipses(kind: str = "mixed", **settings: object) -> Session:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from sandbox.studies.accuracy_math import (
+from sandbox.studies.accuracy.fronts import (
     cost_at,
     coverage,
     extrapolate,

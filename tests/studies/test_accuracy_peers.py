@@ -12,9 +12,9 @@ from core.packing import Packing, PeriodicBox
 from core.problem import Problem
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
-from sandbox.studies.accuracy_chart import chart_forces, paper_chart, to_chart, to_smooth
-from sandbox.studies.accuracy_exact import ExactProblem, contact, near_contacts
-from sandbox.studies.accuracy_peers import l_bfgs_b, newton
+from sandbox.studies.accuracy.chart import chart_forces, paper_chart, to_chart, to_smooth
+from sandbox.studies.accuracy.exact import ExactProblem, contact, near_contacts
+from sandbox.studies.accuracy.peers import l_bfgs_b, newton
 
 
 def squeezed(seed: int = 3, count: int = 12) -> Packing:

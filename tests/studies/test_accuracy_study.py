@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox import cli
-from sandbox.commands import Protocol as Drive
-from sandbox.session import Session
-from sandbox.studies import accuracy
-from sandbox.studies.accuracy_job import Job, measure
-from sandbox.studies.accuracy_protocols import PROTOCOLS, QUICK
-from sandbox.studies.accuracy_report import as_markdown, as_table, percent, statement
-from sandbox.studies.accuracy_summary import (
+from sandbox.cli import main as cli
+from sandbox.session.commands import Protocol as Drive
+from sandbox.session.session import Session
+from sandbox.studies.accuracy import study as accuracy
+from sandbox.studies.accuracy.job import Job, measure
+from sandbox.studies.accuracy.protocols import PROTOCOLS, QUICK
+from sandbox.studies.accuracy.report import as_markdown, as_table, percent, statement
+from sandbox.studies.accuracy.summary import (
     along_path,
     bifurcation,
     estimate,
@@ -30,8 +30,8 @@ from sandbox.studies.accuracy_summary import (
     stiffness,
     summarise,
 )
-from sandbox.studies.accuracy_walk import Knobs, begin, walk
-from sandbox.studies.paper import machine
+from sandbox.studies.accuracy.walk import Knobs, begin, walk
+from sandbox.studies.common.folder import machine
 from scenes import registry
 
 COMMAND = [sys.executable, "-m", "sandbox", "study", "accuracy"]

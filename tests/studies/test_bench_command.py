@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from sandbox import cli
-from sandbox.studies import bench
-from sandbox.studies.bench_report import Row, Section
+from sandbox.cli import main as cli
+from sandbox.studies.bench import bench
+from sandbox.studies.bench.report import Row, Section
 
 
 def cardboard(met: bool) -> Section:

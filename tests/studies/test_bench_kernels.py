@@ -7,7 +7,8 @@ import pytest
 
 from core.packing import PeriodicBox
 from core.relaxation import Relaxation
-from sandbox.studies import bench_kernels, scalar_kernel
+from sandbox.studies.bench import kernels as bench_kernels
+from sandbox.studies.bench import scalar_kernel
 from tests.core.examples import random_grains
 
 BOXES = [None, PeriodicBox(16.0, 17.0), PeriodicBox(16.0, 17.0, 2.3), PeriodicBox(16.0)]

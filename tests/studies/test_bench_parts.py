@@ -12,19 +12,17 @@ import pytest
 from core.errors import InputError
 from core.generate import Recipe, pack
 from core.threads import most_threads
-from sandbox.session import Session
-from sandbox.studies import (
-    bench_clock,
-    bench_drawing,
-    bench_frames,
-    bench_peers,
-    bench_report,
-    bench_scaling,
-    bench_startup,
-    bench_threads,
-    soft_discs,
-)
-from sandbox.studies.disc_forces import DiscForces
+from sandbox.session.session import Session
+from sandbox.studies.bench import drawing as bench_drawing
+from sandbox.studies.bench import frames as bench_frames
+from sandbox.studies.bench import peers as bench_peers
+from sandbox.studies.bench import report as bench_report
+from sandbox.studies.bench import scaling as bench_scaling
+from sandbox.studies.bench import soft_discs
+from sandbox.studies.bench import startup as bench_startup
+from sandbox.studies.bench import threads as bench_threads
+from sandbox.studies.bench.disc_forces import DiscForces
+from sandbox.studies.common import clock as bench_clock
 
 
 def test_exponent_of_a_power_law() -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from sandbox import tours
-from sandbox.studies import hand, hand_report
-from sandbox.studies.hand_jobs import Job, carry_out
-from sandbox.studies.hand_tours import CLAIMS, TENDENCIES, play
+from sandbox.lessons import tours
+from sandbox.studies.hand import report, study
+from sandbox.studies.hand.jobs import Job, carry_out
+from sandbox.studies.hand.tour_claims import CLAIMS, TENDENCIES, play
 from scenes import registry
 from scenes.scene import STRONGEST
 
@@ -35,15 +35,15 @@ def test_claims_are_about_steps_that_there_are() -> None:
 
 
 def test_jobs_cover_every_scene_with_a_hand() -> None:
-    jobs = hand.all_jobs()
-    scenes = hand.scenes_with_a_hand()
+    jobs = study.all_jobs()
+    scenes = study.scenes_with_a_hand()
     assert set(scenes) == set(registry.names()) - {"two_ellipses"}  # its grains are put, not pushed
-    for part, count in (("push", None), ("random", hand.RANDOM), ("tour", None)):
+    for part, count in (("push", None), ("random", study.RANDOM), ("tour", None)):
         some = [job for job in jobs if job.part == part]
         assert {job.scene for job in some} == set(tours.scenes() if part == "tour" else scenes)
         assert count is None or len(some) == count
     assert len({job.key() for job in jobs}) == len(jobs)
-    assert len(hand.all_jobs(quick=True)) < len(jobs) / 10
+    assert len(study.all_jobs(quick=True)) < len(jobs) / 10
 
 
 def test_a_push_tells_how_it_ended() -> None:
@@ -74,7 +74,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         Job("tour", "grain_row", "", 1),
         Job("random", "grain_row", "mixed", 1),
     ]
-    done = hand.study(out, jobs=1, chosen=chosen)
+    done = study.study(out, jobs=1, chosen=chosen)
     assert not done.failures
     assert not done.interrupted
     assert len(done.rows) == 4
@@ -91,8 +91,8 @@ def test_the_study_writes_tables_that_agree(folder: Path) -> None:
     assert len(rows) == 4  # tours have no row of their own
     data = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert [run["part"] for run in data["runs"]] == ["push", "push", "tour", "random"]
-    assert hand_report.wrong(data["runs"]) == []
-    assert not (folder / hand.KEPT).exists()
+    assert report.wrong(data["runs"]) == []
+    assert not (folder / study.KEPT).exists()
 
 
 def test_what_is_wrong_is_named() -> None:
@@ -108,7 +108,7 @@ def test_what_is_wrong_is_named() -> None:
             "broken": 1,
         },
     ]
-    found = hand_report.wrong(rows)
+    found = report.wrong(rows)
     assert len(found) == 4
     assert all("hopper, seed 7" in line for line in found)
 
@@ -117,7 +117,7 @@ def test_wilson_interval_by_its_closed_form() -> None:
     """z = 1.96: (p + z²/2n ± z √(p(1−p)/n + z²/4n²)) / (1 + z²/n)."""
     z, n, p = 1.959963984540054, 20, 0.6
     middle, half = p + z * z / (2 * n), z * (p * (1 - p) / n + z * z / (4 * n * n)) ** 0.5
-    low, high = hand_report.wilson(12, 20)
+    low, high = report.wilson(12, 20)
     assert low == pytest.approx((middle - half) / (1 + z * z / n))
     assert high == pytest.approx((middle + half) / (1 + z * z / n))
-    assert hand_report.wilson(20, 20)[1] == 1.0
+    assert report.wilson(20, 20)[1] == 1.0

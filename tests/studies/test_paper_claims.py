@@ -8,9 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sandbox.studies import paper_bulk, paper_flow, paper_grains, paper_shear
-from sandbox.studies.paper import CLAIMS
-from sandbox.studies.paper_claims import (
+from sandbox.studies.paper import bulk as paper_bulk
+from sandbox.studies.paper import flow as paper_flow
+from sandbox.studies.paper import grains as paper_grains
+from sandbox.studies.paper import shear as paper_shear
+from sandbox.studies.paper.claims import (
     Claim,
     Finding,
     Measured,
@@ -19,8 +21,9 @@ from sandbox.studies.paper_claims import (
     number,
     ratio,
 )
-from sandbox.studies.paper_probes import PROBES
-from sandbox.studies.runs import Request, Result
+from sandbox.studies.paper.probes import PROBES
+from sandbox.studies.paper.runs import Request, Result
+from sandbox.studies.paper.study import CLAIMS
 from scenes import registry
 
 

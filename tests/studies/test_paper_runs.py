@@ -14,10 +14,10 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from sandbox import cli
-from sandbox.studies import paper
-from sandbox.studies.paper_claims import Claim, Figure, Finding, Line, Measured, Panel
-from sandbox.studies.runs import (
+from sandbox.cli import main as cli
+from sandbox.studies.paper import study as paper
+from sandbox.studies.paper.claims import Claim, Figure, Finding, Line, Measured, Panel
+from sandbox.studies.paper.runs import (
     Request,
     Result,
     Stopped,
@@ -51,7 +51,7 @@ def test_execute_stops_when_told() -> None:
 
 
 def test_execute_tells_of_a_run_that_ended_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    from sandbox.session import Session
+    from sandbox.session.session import Session
 
     def collapse(session: Session, _: int) -> bool:
         from dataclasses import replace
@@ -61,7 +61,7 @@ def test_execute_tells_of_a_run_that_ended_early(monkeypatch: pytest.MonkeyPatch
             row = replace(session.run.history[-1], increment=1, stop_reason="collapsed")
             session.run.history.append(row)
             return True
-        session.run.follow_script(False)
+        session.run.hands.follow_script(False)
         return False
 
     monkeypatch.setattr(Session, "advance", collapse)
@@ -145,8 +145,8 @@ def count(results: object) -> Finding:
 def test_a_process_that_dies_fails_its_run_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from sandbox.studies import runs
-    from sandbox.studies.pool import Pool
+    from sandbox.studies.common.pool import Pool
+    from sandbox.studies.paper import runs
 
     store = Store(tmp_path)
     told: list[Result] = []
@@ -173,7 +173,7 @@ def test_figures_are_pictures(tmp_path: Path) -> None:
     import imageio.v2
     import numpy as np
 
-    from sandbox.studies.figures import draw
+    from sandbox.studies.paper.figures import draw
 
     x = np.array([1.0, 2.0])
     lines = (

@@ -15,9 +15,11 @@ from core.errors import InputError
 from core.packing import Packing, PeriodicBox
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
-from sandbox import cli
-from sandbox.studies import stability, stability_report, stability_rigs
-from sandbox.studies.stability_case import (
+from sandbox.cli import main as cli
+from sandbox.studies.stability import report as stability_report
+from sandbox.studies.stability import rigs as stability_rigs
+from sandbox.studies.stability import study as stability
+from sandbox.studies.stability.case import (
     CRASHED,
     FAILS,
     HOLDS,
@@ -30,7 +32,7 @@ from sandbox.studies.stability_case import (
     Outcome,
     carry_out,
 )
-from sandbox.studies.stability_watch import Stopped, Watch, balance, reported, soundness
+from sandbox.studies.stability.watch import Stopped, Watch, balance, reported, soundness
 
 LIGHT = ("one grain between two plates", "packings that make no sense", "tolerance")
 

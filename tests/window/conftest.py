@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from sandbox import autosave, language
+from sandbox.files import autosave
+from sandbox.words import language
 
 
 @pytest.fixture(autouse=True)

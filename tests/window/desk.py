@@ -9,7 +9,8 @@ from typing import Any
 import pygame
 
 from sandbox.window.app import App
-from sandbox.window.run import Run
+from sandbox.window.display import Looks
+from sandbox.window.solvers.panes import Panes
 from tests.window.fake_session import FakeSession
 
 
@@ -18,7 +19,7 @@ class Desk:
 
     def __init__(self, size: tuple[int, int] = (800, 600), scale: float = 1.0) -> None:
         self.sessions: list[FakeSession] = []
-        self.app = App(Run("mixed", 1, self._make), size=size, scale=scale)
+        self.app = App(Panes("mixed", 1, self._make), Looks(size, scale))
 
     def _make(self, *arguments: Any) -> Any:
         session = FakeSession(*arguments)
@@ -30,15 +31,15 @@ class Desk:
         return self.sessions[-1]
 
     def page(self) -> str:
-        if not self.app.running:
+        if not self.app.stage.running:
             return "closed"
-        return "menu" if self.app.show_menu else "help" if self.app.show_help else "run"
+        return "menu" if self.app.stage.show_menu else "help" if self.app.stage.show_help else "run"
 
     def paused(self) -> bool:
-        return self.app.run.paused
+        return self.app.stage.panes.paused
 
     def start(self) -> None:
-        self.app.start("intruder")
+        self.app.stage.start("intruder")
         self.until(lambda: not self.app._splash)
 
     def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
@@ -78,7 +79,7 @@ class Desk:
         self.post(pygame.MOUSEBUTTONUP, pos=pos, button=1)
 
     def handle_place(self) -> tuple[float, float]:
-        frame = self.app.run.snapshot.frame
+        frame = self.app.stage.panes.snapshot.frame
         assert frame is not None
         handle = frame.handles[0]
-        return self.app.renderer.camera.to_screen(handle.x, handle.y)
+        return self.app.stage.renderer.camera.to_screen(handle.x, handle.y)

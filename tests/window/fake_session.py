@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from core.errors import InputError
-from sandbox.commands import (
+from sandbox.session.commands import (
     Change,
     Command,
     Grab,
@@ -19,8 +19,10 @@ from sandbox.commands import (
     Reset,
     Scalar,
 )
-from sandbox.frame import Frame
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.frame import Frame
+from sandbox.session.log import Log
+from sandbox.window.solvers.conductor import Conductor
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.draw.frames import intruder_frame
 
 SLICES = 3  # to an increment
@@ -51,7 +53,6 @@ class FakeSession:
         self.fail_build: Exception | None = None
         self.block_build: threading.Event | None = None
         self.slice_time = 0.0005
-        self.logged = ""
         self._waiting: list[Command] = []
         self._slice = 0
         self._script = False
@@ -156,9 +157,10 @@ class FakeSession:
     def made(self) -> None:
         """Nothing to be kept in a file."""
 
-    def write_log(self, path: str) -> None:
+    def log(self) -> Log:
         assert not self.busy, "a log ends between increments"
-        self.logged = path
+        done = tuple((0, command) for command in self.commands)
+        return Log("hopper", self.packing, self.seed, {}, done, self.increments, "")
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
@@ -171,7 +173,7 @@ def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
 
 def started(session: FakeSession, paused: bool = False) -> SolverThread:
     """A thread that has built the session."""
-    solver = SolverThread(session, paused=paused)
+    solver = SolverThread(session, Conductor(paused=paused))
     solver.start()
     wait_until(lambda: solver.snapshot.phase == "running")
     return solver

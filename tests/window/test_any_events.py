@@ -43,7 +43,7 @@ def some_key(chance: random.Random, desk: Desk) -> None:
 
 
 def some_press(chance: random.Random, desk: Desk) -> None:
-    width, height = desk.app.renderer.size
+    width, height = desk.app.stage.renderer.size
     start = chance.randrange(width), chance.randrange(height)
     end = start[0] + chance.randrange(-60, 60), start[1] + chance.randrange(-60, 60)
     desk.point(start)
@@ -62,15 +62,15 @@ def test_any_events_leave_the_window_in_order() -> None:
         else:
             some_press(chance, desk)
         app = desk.app
-        if not app.running or app.show_menu or app.show_help:
-            app.running, app.show_help = True, False
-            app.start("intruder")
+        if not app.stage.running or app.stage.show_menu or app.stage.show_help:
+            app.stage.running, app.stage.show_help = True, False
+            app.stage.start("intruder")
             desk.until(lambda: not desk.app._splash)
-        assert app.run.snapshot.phase != "failed", app.run.snapshot.error
+        assert app.stage.panes.snapshot.phase != "failed", app.stage.panes.snapshot.error
         app.tick()
         assert 0 <= app.panel.scroll <= max(app.panel._places.height - app.panel._view, 0)
-        assert app.panel.edit is None or app.panel.edit.name == app.focus.name
-        app.focus.move(1)
-        assert app.focus.name in app.focus.stops()
-        app.focus.move(-1)
+        assert app.panel.edit is None or app.panel.edit.name == app.stage.focus.name
+        app.stage.focus.move(1)
+        assert app.stage.focus.name in app.stage.focus.stops()
+        app.stage.focus.move(-1)
     desk.app.close()

@@ -10,10 +10,11 @@ from typing import Any
 import pygame
 import pytest
 
-from sandbox import autosave, language
-from sandbox.draw.menu_layout import DISCARD, START, TAKE_UP
-from sandbox.window.begin import ago
+from sandbox.draw.pages.menu_layout import DISCARD, START, TAKE_UP
+from sandbox.files import autosave
 from sandbox.window.menu import Choice
+from sandbox.window.pages import ago
+from sandbox.words import language
 from tests.window.desk import Desk
 
 
@@ -45,7 +46,7 @@ def desk() -> Iterator[Desk]:
 
 
 def menu_open(desk: Desk) -> None:
-    desk.app.open_menu()
+    desk.app.pages.open_menu()
     desk.until(lambda: not desk.app._splash)
     desk.app.tick()
 
@@ -54,9 +55,9 @@ def test_what_was_left_is_offered_first_and_taken_up(
     desk: Desk, left: list[LeftBehind], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     taken: list[Any] = []
-    monkeypatch.setattr(desk.app, "take_up", taken.append)
+    monkeypatch.setattr(desk.app.stage, "take_up", taken.append)
     menu_open(desk)
-    menu = desk.app.menu
+    menu = desk.app.pages.menu
     assert menu.chosen == TAKE_UP
     assert menu.resume is not None
     assert menu.resume() == "Left unfinished: Hopper, 150 grains, 12 minutes ago."
@@ -70,24 +71,24 @@ def test_what_was_left_is_offered_first_and_taken_up(
 def test_what_was_left_can_be_discarded_one_by_one(desk: Desk, left: list[LeftBehind]) -> None:
     menu_open(desk)
     for one in left:
-        desk.app.beginnings.take(Choice(what=DISCARD))
+        desk.app.pages.take(Choice(what=DISCARD))
         assert one.removed
-    assert desk.app.menu.resume is None
-    desk.app.beginnings.take(Choice(what=DISCARD))  # a second click too many
+    assert desk.app.pages.menu.resume is None
+    desk.app.pages.take(Choice(what=DISCARD))  # a second click too many
     menu_open(desk)  # it is not looked for again
-    assert desk.app.menu.resume is None
+    assert desk.app.pages.menu.resume is None
 
 
 def test_without_anything_left_the_menu_begins_with_where_to_start(desk: Desk) -> None:
     menu_open(desk)
-    assert (desk.app.menu.resume, desk.app.menu.chosen) == (None, START)
+    assert (desk.app.pages.menu.resume, desk.app.pages.menu.chosen) == (None, START)
 
 
 def test_a_file_that_cannot_be_read_is_said_and_the_menu_stays(desk: Desk, tmp_path: Path) -> None:
     menu_open(desk)
-    desk.app.beginnings.take(Choice(file=tmp_path / "gone.toml"))
+    desk.app.pages.take(Choice(file=tmp_path / "gone.toml"))
     assert desk.page() == "menu"
-    assert "gone.toml" in desk.app.notices.latest
+    assert "gone.toml" in desk.app.stage.notices.latest
 
 
 @pytest.mark.parametrize(

@@ -37,8 +37,8 @@ def twin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
     desk = Desk((WIDTH, HEIGHT))
-    desk.app.screen = pygame.Surface((WIDTH, HEIGHT))
-    desk.app.renderer.resize((WIDTH, HEIGHT))
+    desk.app.stage.screen = pygame.Surface((WIDTH, HEIGHT))
+    desk.app.stage.renderer.resize((WIDTH, HEIGHT))
     yield desk
     desk.app.close()
 
@@ -55,11 +55,11 @@ def drag(person: Person, start: tuple[int, int], way: tuple[int, int], seconds: 
 
 def keys_to_the_hopper(twin: Desk) -> int:
     """How often Tab must be pressed in the menu."""
-    twin.app.open_menu()
+    twin.app.pages.open_menu()
     twin.until(lambda: not twin.app._splash)
     twin.app.tick()
     for presses in range(40):
-        if twin.app.menu.chosen == "scene/hopper":
+        if twin.app.pages.menu.chosen == "scene/hopper":
             return presses
         twin.key(pygame.K_TAB)
     raise AssertionError("the menu has no hopper")
@@ -92,8 +92,8 @@ def has_both_kinds(person: Person) -> bool:
 
 def test_a_lesson(person: Person, twin: Desk) -> None:
     presses = keys_to_the_hopper(twin)
-    twin.app.start("hopper")
-    twin.until(lambda: not twin.app._splash and not twin.app.show_menu)
+    twin.app.stage.start("hopper")
+    twin.until(lambda: not twin.app._splash and not twin.app.stage.show_menu)
     twin.app.tick()
     log = person.folder / "lesson.jsonl"
     words = ["--size", f"{WIDTH}x{HEIGHT}", "--scale", "1", "--language", "en", "--log", str(log)]

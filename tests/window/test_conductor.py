@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from sandbox.commands import Change, Command, Grab, Move, Protocol, Recall, Release, Reset
-from sandbox.window.conductor import Conductor
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.commands import Change, Command, Grab, Move, Protocol, Recall, Release, Reset
+from sandbox.window.solvers.conductor import Conductor
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.window.fake_session import FakeSession, wait_until
 
 
@@ -28,7 +28,7 @@ class Diary(FakeSession):
 
 def together(conductor: Conductor, *paces: float) -> tuple[list[Diary], list[SolverThread]]:
     sessions = [Diary(pace) for pace in paces]
-    solvers = [SolverThread(session, conductor=conductor) for session in sessions]
+    solvers = [SolverThread(session, conductor) for session in sessions]
     for solver in solvers:
         solver.start()
     return sessions, solvers

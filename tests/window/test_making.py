@@ -9,18 +9,18 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from sandbox.autosave import Autosave, find
-from sandbox.commands import Change, DrawWall, Place, Protocol, Undo
-from sandbox.frame import Frame
-from sandbox.scene_file import read_scene, write_scene
-from sandbox.window.run import Run
-from tests.sandbox.test_editing import built, do
+from sandbox.files.autosave import Autosave, find
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.commands import Change, DrawWall, Place, Protocol, Undo
+from sandbox.session.frame import Frame
+from sandbox.window.solvers.panes import Panes
+from tests.session.test_editing import built, do
 
 PATIENCE = 60.0  # [s]
 WALL = DrawWall(((20.0, 3.0), (24.0, 4.0)))
 
 
-def wait(run: Run, condition: Callable[[Frame], bool], pane: int = 0) -> Frame:
+def wait(run: Panes, condition: Callable[[Frame], bool], pane: int = 0) -> Frame:
     """Tick as the window does until the picture is like that."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
@@ -36,8 +36,8 @@ def wait(run: Run, condition: Callable[[Frame], bool], pane: int = 0) -> Frame:
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Iterator[Run]:
-    one = Run("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
+def run(tmp_path: Path) -> Iterator[Panes]:
+    one = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
     yield one
     one.close(None)
 
@@ -46,11 +46,11 @@ def run(tmp_path: Path) -> Iterator[Run]:
 def file(tmp_path: Path) -> Path:
     session = built(grains=0)
     do(session, WALL, Place(10.0, 4.0, "regular"), Place(13.0, 4.0, "auxetic"))
-    write_scene(tmp_path / "made.toml", session)
+    write_scene(tmp_path / "made.toml", session.made())
     return tmp_path / "made.toml"
 
 
-def test_what_was_made_is_saved_and_opened(run: Run, tmp_path: Path) -> None:
+def test_what_was_made_is_saved_and_opened(run: Panes, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="nothing to save"):
         run.save(tmp_path / "it.toml")
     run.start("workshop", {"grains": 0})
@@ -70,7 +70,7 @@ def test_what_was_made_is_saved_and_opened(run: Run, tmp_path: Path) -> None:
     wait(run, lambda frame: frame.grains == 1)
 
 
-def test_while_the_run_is_held_things_are_made_and_the_drive_stays(run: Run) -> None:
+def test_while_the_run_is_held_things_are_made_and_the_drive_stays(run: Panes) -> None:
     run.start("workshop", {"grains": 0})
     wait(run, lambda frame: True)
     run.send(Protocol(True))
@@ -88,14 +88,14 @@ def test_while_the_run_is_held_things_are_made_and_the_drive_stays(run: Run) -> 
     wait(run, lambda frame: frame.grains == 0)
 
 
-def test_refusals_are_counted_for_the_window(run: Run) -> None:
+def test_refusals_are_counted_for_the_window(run: Panes) -> None:
     run.start("workshop", {"grains": 0})
     wait(run, lambda frame: True)
     run.send(Place(-9.0, 4.0, "regular"))
     assert "inside" in wait(run, lambda frame: frame.refusals == 1).refusal
 
 
-def test_what_a_file_has_is_put_side_by_side(run: Run, file: Path) -> None:
+def test_what_a_file_has_is_put_side_by_side(run: Panes, file: Path) -> None:
     run.open(file)
     wait(run, lambda frame: frame.grains == 2)
     run.compare()
@@ -111,7 +111,7 @@ def test_what_a_file_has_is_put_side_by_side(run: Run, file: Path) -> None:
         wait(run, lambda frame: frame.grains == 3, k)
 
 
-def test_a_new_start_leaves_the_file_behind(run: Run, file: Path) -> None:
+def test_a_new_start_leaves_the_file_behind(run: Panes, file: Path) -> None:
     run.open(file)
     wait(run, lambda frame: frame.grains == 2)
     run.send(Change("grains", 7))
@@ -122,7 +122,7 @@ def test_a_new_start_leaves_the_file_behind(run: Run, file: Path) -> None:
 
 
 def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
-    first = Run("mixed", 1, autosave=Autosave(tmp_path, 0.02))
+    first = Panes("mixed", 1, autosave=Autosave(tmp_path, 0.02))
     first.start("workshop", {"grains": 0})
     wait(first, lambda frame: True)
     first.send(WALL)
@@ -130,7 +130,7 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     wait(first, lambda frame: frame.grains == 1)
     first.close(None, clean=False)
     (leftover,) = find(tmp_path)
-    second = Run("regular", 5, autosave=Autosave(tmp_path, 0.02))
+    second = Panes("regular", 5, autosave=Autosave(tmp_path, 0.02))
     second.take_up(leftover)
     frame = wait(second, lambda frame: frame.grains == 1)
     assert (frame.packing, frame.seed) == ("mixed", 1)

@@ -7,11 +7,18 @@ from collections.abc import Iterator
 import pygame
 import pytest
 
-from sandbox import language
-from sandbox.commands import Change, Command, Protocol, Reset
-from sandbox.draw import words
-from sandbox.draw.widgets import Button, Choice, Heading, Slider, Stepper, TextField, parts_of
-from sandbox.window.edit import Edit
+from sandbox.draw.widgets.controls import (
+    Button,
+    Choice,
+    Heading,
+    Slider,
+    Stepper,
+    TextField,
+    parts_of,
+)
+from sandbox.session.commands import Change, Command, Protocol, Reset
+from sandbox.window.panel.line_edit import Edit
+from sandbox.words import language, words
 from tests.window.desk import Desk
 
 
@@ -49,7 +56,7 @@ def track(desk: Desk, name: str) -> pygame.Rect:
     box(desk, name)
     place = desk.app.panel._places.named(name)
     assert place is not None
-    parts = parts_of(place.control, place.rect, desk.app.renderer.type)
+    parts = parts_of(place.control, place.rect, desk.app.stage.renderer.type)
     return parts.track.move(desk.app.panel.rect.left, -desk.app.panel.scroll)
 
 
@@ -57,14 +64,14 @@ def number(desk: Desk, name: str) -> tuple[int, int]:
     box(desk, name)
     place = desk.app.panel._places.named(name)
     assert place is not None
-    parts = parts_of(place.control, place.rect, desk.app.renderer.type)
+    parts = parts_of(place.control, place.rect, desk.app.stage.renderer.type)
     return parts.box.move(desk.app.panel.rect.left, -desk.app.panel.scroll).center
 
 
 def go_to(desk: Desk, name: str) -> None:
     """By Tab alone."""
     for _ in range(60):
-        if desk.app.focus.ring == name:
+        if desk.app.stage.focus.ring == name:
             return
         desk.key(pygame.K_TAB)
     raise AssertionError(f"Tab never came to {name}")
@@ -84,12 +91,12 @@ SHARE = "grains/auxetic_fraction"  # packs anew
 def test_tab_goes_through_everything_and_comes_back(desk: Desk) -> None:
     desk.app.panel.folded.clear()
     desk.app.tick()
-    wanted = desk.app.focus.stops()
+    wanted = desk.app.stage.focus.stops()
     assert {"canvas/intruder", "general/packing", NU, "solver/tolerance", "time/bar"} <= set(wanted)
     seen = []
     for _ in wanted:
         desk.key(pygame.K_TAB)
-        seen.append(desk.app.focus.ring)
+        seen.append(desk.app.stage.focus.ring)
         rect = desk.app.panel.place_of(seen[-1])
         if rect is not None:  # what has the ring can be seen
             view = desk.app.panel.rect.copy()
@@ -97,9 +104,9 @@ def test_tab_goes_through_everything_and_comes_back(desk: Desk) -> None:
             assert view.contains(rect), seen[-1]
     assert seen == wanted
     desk.key(pygame.K_TAB)
-    assert desk.app.focus.ring == wanted[0]
+    assert desk.app.stage.focus.ring == wanted[0]
     desk.key(pygame.K_TAB, mod=pygame.KMOD_SHIFT)
-    assert desk.app.focus.ring == wanted[-1]
+    assert desk.app.stage.focus.ring == wanted[-1]
 
 
 def test_every_control_answers_the_keyboard(desk: Desk) -> None:
@@ -128,7 +135,7 @@ def test_every_control_answers_the_keyboard(desk: Desk) -> None:
 
 def effects(desk: Desk) -> tuple[object, ...]:
     """All that the panel can change."""
-    renderer = desk.app.renderer
+    renderer = desk.app.stage.renderer
     looks = renderer.view.name, renderer.chains, renderer.theme.name, renderer.scale
     return len(sent(desk)), *looks, language.present()
 
@@ -147,8 +154,8 @@ def test_buttons_by_enter_and_space(desk: Desk) -> None:
 def test_escape_leads_back_to_the_canvas_first(desk: Desk) -> None:
     go_to(desk, NU)
     desk.key(pygame.K_ESCAPE)
-    assert desk.app.focus.on_canvas
-    assert desk.app.focus.ring == ""
+    assert desk.app.stage.focus.on_canvas
+    assert desk.app.stage.focus.ring == ""
     assert desk.page() == "run"
     desk.key(pygame.K_ESCAPE)
     assert desk.page() == "menu"
@@ -192,10 +199,10 @@ def test_a_number_is_typed(desk: Desk) -> None:
     assert sent(desk) == []
     desk.key(pygame.K_RETURN)
     desk.until(lambda: sent(desk) == [Change("regular_poisson_ratio", 0.25)])
-    assert desk.app.focus.ring == NU
+    assert desk.app.stage.focus.ring == NU
     desk.type("7")
     desk.key(pygame.K_RETURN)
-    assert "between" in desk.app.notices.latest
+    assert "between" in desk.app.stage.notices.latest
     desk.type("-")
     desk.key(pygame.K_ESCAPE)
     assert len(sent(desk)) == 1
@@ -205,10 +212,10 @@ def test_a_number_is_typed(desk: Desk) -> None:
 def test_letters_do_what_they_always_do_but_not_while_typing(desk: Desk) -> None:
     go_to(desk, NU)
     desk.key(pygame.K_t)
-    assert desk.app.renderer.theme.name == "light"
+    assert desk.app.stage.renderer.theme.name == "light"
     desk.key(pygame.K_RETURN)
     desk.key(pygame.K_t)
-    assert desk.app.renderer.theme.name == "light"
+    assert desk.app.stage.renderer.theme.name == "light"
     desk.key(pygame.K_ESCAPE)
     assert sent(desk) == []
 
@@ -222,7 +229,7 @@ def test_seed_is_stepped_and_typed(desk: Desk) -> None:
     desk.until(lambda: sent(desk)[-1] == Change("seed", 77))
     desk.type("7-")
     desk.key(pygame.K_RETURN)
-    assert desk.app.notices.latest == words.SEED_WRONG
+    assert desk.app.stage.notices.latest == words.SEED_WRONG
 
 
 def test_sections_fold_by_keyboard(desk: Desk) -> None:
@@ -326,14 +333,14 @@ def test_wheel_and_finger_scroll(desk: Desk) -> None:
 
 
 def test_fold_gives_the_canvas_the_room(desk: Desk) -> None:
-    width = desk.app.renderer.layout.canvas.width
+    width = desk.app.stage.renderer.layout.canvas.width
     desk.key(pygame.K_k)
     desk.app.tick()
     assert not desk.app.panel.drawer.shown
-    assert desk.app.renderer.layout.canvas.width > width
-    assert not any(name.startswith("general") for name in desk.app.focus.stops())
+    assert desk.app.stage.renderer.layout.canvas.width > width
+    assert not any(name.startswith("general") for name in desk.app.stage.focus.stops())
     desk.key(pygame.K_k)
-    assert desk.app.renderer.layout.canvas.width == width
+    assert desk.app.stage.renderer.layout.canvas.width == width
 
 
 def test_folded_panel_opens_by_mouse(desk: Desk) -> None:
@@ -352,7 +359,7 @@ def test_where_there_is_no_room_the_panel_opens_over_the_canvas() -> None:
     desk.key(pygame.K_k)
     desk.app.tick()
     assert 600 <= panel.rect.width <= 800
-    assert panel.rect.right == desk.app.renderer.size[0]
+    assert panel.rect.right == desk.app.stage.renderer.size[0]
     assert "general/reset" in panel.stops()
     assert desk.app.timeline.rect.height == 0
     rect = box(desk, "time/play")  # there is no room for the time line: its buttons are here
@@ -367,7 +374,7 @@ def test_press_on_the_panel_is_none_on_the_canvas(desk: Desk) -> None:
     desk.app.panel.drawer.over = True
     rect = desk.app.panel.rect
     desk.press((rect.centerx, rect.bottom - 5))
-    assert not desk.app.mouse.holding
+    assert not desk.app.stage.mouse.holding
     desk.release((rect.centerx, rect.bottom - 5))
 
 

@@ -11,7 +11,9 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.commands import (
+from sandbox.draw.timeline import Bar
+from sandbox.draw.widgets.controls import Fact, TextField
+from sandbox.session.commands import (
     Change,
     Command,
     DrawWall,
@@ -26,12 +28,10 @@ from sandbox.commands import (
     Retype,
     Undo,
 )
-from sandbox.draw import words
-from sandbox.draw.timeline import Bar
-from sandbox.draw.widgets import Fact, TextField
-from sandbox.frame import Contacts
-from sandbox.history import Event
+from sandbox.session.frame import Contacts
+from sandbox.session.history import Event
 from sandbox.window import timeline
+from sandbox.words import words
 from tests.window.desk import Desk
 
 
@@ -49,7 +49,7 @@ def sent(desk: Desk) -> list[Command]:
 
 
 def increment(desk: Desk) -> int:
-    frame = desk.app.run.snapshot.frame
+    frame = desk.app.stage.panes.snapshot.frame
     assert frame is not None
     return frame.increment
 
@@ -66,7 +66,7 @@ def some_increments(desk: Desk, count: int) -> None:
 
 def tab_to(desk: Desk, name: str) -> None:
     for _ in range(60):
-        if desk.app.focus.ring == name:
+        if desk.app.stage.focus.ring == name:
             return
         desk.key(pygame.K_TAB)
     raise AssertionError(f"Tab never came to {name}")
@@ -124,7 +124,7 @@ def test_bar_by_keyboard(desk: Desk) -> None:
 
 def test_nothing_kept_says_so(desk: Desk) -> None:
     desk.key(pygame.K_LEFTBRACKET, "[")
-    assert desk.app.notices.latest == words.NOTHING_KEPT
+    assert desk.app.stage.notices.latest == words.NOTHING_KEPT
     assert sent(desk) == []
 
 
@@ -140,7 +140,7 @@ def test_undo_and_redo_by_all_their_keys(desk: Desk) -> None:
 
 def test_speed_has_its_keys_and_limits(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     limits: list[float] = []
-    monkeypatch.setattr(desk.app.run, "set_speed", limits.append)
+    monkeypatch.setattr(desk.app.stage.panes, "set_speed", limits.append)
     for _ in range(9):
         desk.key(pygame.K_COMMA)
     for _ in range(9):
@@ -192,13 +192,13 @@ def test_bar_of_one_increment_has_both_ends() -> None:
 
 
 def grain_place(desk: Desk, index: int) -> tuple[float, float]:
-    frame, camera, _ = desk.app.panes()[0]
+    frame, camera, _ = desk.app.stage.picture.panes()[0]
     return camera.to_screen(float(frame.x[index]), float(frame.y[index]))
 
 
 def test_click_looks_at_a_grain_and_escape_ends_it(desk: Desk) -> None:
     desk.click(grain_place(desk, 0))
-    frame = desk.app.panes()[0][0]
+    frame = desk.app.stage.picture.panes()[0][0]
     assert desk.app.inspector.inspection is not None
     assert desk.app.inspector.inspection.label == int(frame.label[0])
     desk.app.tick()
@@ -214,7 +214,7 @@ def test_click_looks_at_a_grain_and_escape_ends_it(desk: Desk) -> None:
 
 def test_click_between_the_grains_looks_at_none(desk: Desk) -> None:
     desk.click(grain_place(desk, 0))
-    rect = desk.app.renderer.layout.canvas
+    rect = desk.app.stage.renderer.layout.canvas
     desk.click((rect.left + 2, rect.top + 2))
     assert desk.app.inspector.label is None
 
@@ -260,7 +260,9 @@ def test_next_grain_in_contact_goes_along_the_strongest(desk: Desk) -> None:
 
 
 def test_from_a_grain_that_touches_nothing_to_the_nearest(desk: Desk) -> None:
-    frame = desk.app.panes()[0][0]  # nobody knows its contacts' grains: there are none
+    frame = desk.app.stage.picture.panes()[0][
+        0
+    ]  # nobody knows its contacts' grains: there are none
     desk.key(pygame.K_i)
     seen = []
     for _ in range(4):
@@ -289,7 +291,7 @@ def test_grain_that_has_left_is_looked_at_no_more(desk: Desk) -> None:
 
 
 def test_arrow_keys_pull_the_handle(desk: Desk) -> None:
-    frame = desk.app.panes()[0][0]
+    frame = desk.app.stage.picture.panes()[0][0]
     x, y = frame.handles[0].x, frame.handles[0].y
     for key in (pygame.K_RIGHT, pygame.K_RIGHT, pygame.K_UP):
         desk.key(key)
@@ -305,7 +307,7 @@ def test_arrow_keys_pull_the_handle(desk: Desk) -> None:
 
 def test_hand_by_keyboard_is_never_far_ahead(desk: Desk) -> None:
     desk.key(pygame.K_SPACE)  # the body cannot follow
-    frame = desk.app.panes()[0][0]
+    frame = desk.app.stage.picture.panes()[0][0]
     for _ in range(30):
         desk.key(pygame.K_RIGHT)
     desk.key(pygame.K_SPACE)
@@ -335,7 +337,7 @@ def test_handle_on_a_rail_moves_along_it(desk: Desk) -> None:
 
 
 def in_world(desk: Desk, place: tuple[float, float]) -> tuple[float, float]:
-    return desk.app.panes()[0][1].to_world(round(place[0]), round(place[1]))
+    return desk.app.stage.picture.panes()[0][1].to_world(round(place[0]), round(place[1]))
 
 
 def use_tool(desk: Desk, tool: str) -> None:
@@ -348,7 +350,7 @@ def use_tool(desk: Desk, tool: str) -> None:
 def test_brush_places_and_drags(desk: Desk) -> None:
     desk.key(pygame.K_b)
     start = grain_place(desk, 0)
-    scale = desk.app.panes()[0][1].scale
+    scale = desk.app.stage.picture.panes()[0][1].scale
     desk.press(start)
     for step in range(1, 9):
         desk.point((start[0] + 0.55 * step * scale, start[1]), pressed=True)
@@ -399,7 +401,7 @@ def test_wall_is_drawn_by_a_drag(desk: Desk) -> None:
 
 def test_brush_by_keyboard(desk: Desk) -> None:
     desk.key(pygame.K_b)
-    x0, y0, x1, y1 = desk.app.panes()[0][0].bounds
+    x0, y0, x1, y1 = desk.app.stage.picture.panes()[0][0].bounds
     desk.key(pygame.K_RIGHT)
     desk.key(pygame.K_UP)
     desk.key(pygame.K_RETURN)
@@ -417,7 +419,7 @@ def test_brush_by_keyboard(desk: Desk) -> None:
 def test_hand_comes_before_the_brush(desk: Desk) -> None:
     desk.key(pygame.K_b)
     desk.press(desk.handle_place())
-    assert desk.app.mouse.holding
+    assert desk.app.stage.mouse.holding
     desk.release(desk.handle_place())
     desk.until(lambda: Release("intruder") in sent(desk))
     assert not any(isinstance(command, Place) for command in sent(desk))
@@ -432,8 +434,8 @@ def test_scene_file_is_named_saved_and_opened(
     saved: list[str] = []
     opened: list[Path] = []
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(desk.app.run, "save", saved.append)
-    monkeypatch.setattr(desk.app, "open", opened.append)
+    monkeypatch.setattr(desk.app.stage.panes, "save", saved.append)
+    monkeypatch.setattr(desk.app.stage, "open", opened.append)
     text = 'format = "auxetic-sandbox scene"\nscene = "intruder"\n'
     (tmp_path / "made before.toml").write_text(text, encoding="utf-8")
     (tmp_path / "something else.toml").write_text("x = 1\n", encoding="utf-8")
@@ -449,7 +451,7 @@ def test_scene_file_is_named_saved_and_opened(
     desk.key(pygame.K_RETURN)  # nothing is written over
     assert saved == ["my trap.toml", "my trap-1.toml"]
     tab_to(desk, "files/open/made before.toml")
-    assert "files/open/something else.toml" not in desk.app.focus.stops()
+    assert "files/open/something else.toml" not in desk.app.stage.focus.stops()
     desk.key(pygame.K_RETURN)
     assert opened == [Path("made before.toml")]
 
@@ -461,8 +463,8 @@ def test_name_of_a_file_cannot_leave_the_folder(desk: Desk) -> None:
 
 
 def test_earlier_curves_are_named_hidden_and_forgotten(desk: Desk) -> None:
-    desk.app.run.curves.keep(desk.app.run.snapshot.frame)
-    (kept,) = desk.app.run.curves.entries
+    desk.app.stage.panes.curves.keep(desk.app.stage.panes.snapshot.frame)
+    (kept,) = desk.app.stage.panes.curves.entries
     desk.app.tick()
     field = desk.app.panel._places.named(f"curves/name/{kept.key}")
     assert field is not None
@@ -477,17 +479,17 @@ def test_earlier_curves_are_named_hidden_and_forgotten(desk: Desk) -> None:
     assert not kept.visible
     tab_to(desk, f"curves/delete/{kept.key}")
     desk.key(pygame.K_RETURN)
-    assert desk.app.run.curves.entries == ()
+    assert desk.app.stage.panes.curves.entries == ()
     desk.app.tick()
-    assert "curves" not in desk.app.focus.stops()
+    assert "curves" not in desk.app.stage.focus.stops()
 
 
 def test_refusal_is_said_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     said: list[str] = []
-    monkeypatch.setattr(desk.app, "toast", said.append)
+    monkeypatch.setattr(desk.app.stage, "toast", said.append)
     still = desk.session._still
     desk.session._still = replace(still, refusals=1, refusal="no room here")
     some_increments(desk, 2)
-    desk.app.send(Change("friction", 0.1))
+    desk.app.stage.send(Change("friction", 0.1))
     desk.until(lambda: bool(desk.session.changed))
     assert said.count("no room here") == 1

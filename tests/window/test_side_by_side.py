@@ -14,11 +14,11 @@ import pygame
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
-from sandbox.draw import words
-from sandbox.views.side_by_side import NOT_ALL, way_back
-from sandbox.views.video import VideoWriter
-from sandbox.window import record
+from sandbox.record.video import VideoWriter
+from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
+from sandbox.window import film as record
+from sandbox.window.solvers.in_step import NOT_ALL, way_back
+from sandbox.words import words
 from tests.draw.frames import intruder_frame
 from tests.window.desk import Desk
 
@@ -36,34 +36,34 @@ def desk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Desk]:
 
 def compare(desk: Desk) -> None:
     desk.key(pygame.K_c)
-    desk.until(lambda: [seen.phase for seen in desk.app.run.snapshots] == ["running"] * 3)
+    desk.until(lambda: [seen.phase for seen in desk.app.stage.panes.snapshots] == ["running"] * 3)
     desk.app.tick()
 
 
 def counts(desk: Desk) -> tuple[int, ...]:
-    return len(desk.app.panes()), len(desk.app.renderer.layout.canvases)
+    return len(desk.app.stage.picture.panes()), len(desk.app.stage.renderer.layout.canvases)
 
 
 def alone(desk: Desk) -> bool:
-    return desk.app.run.packings == ("mixed",)
+    return desk.app.stage.panes.packings == ("mixed",)
 
 
 def recording(desk: Desk) -> bool:
-    return desk.app.recorder.recording
+    return desk.app.stage.recorder.recording
 
 
 def said(desk: Desk) -> str:
-    return desk.app.notices.latest
+    return desk.app.stage.notices.latest
 
 
 def test_compare_and_back(desk: Desk) -> None:
     compare(desk)
-    assert desk.app.run.packings == SIDES
+    assert desk.app.stage.panes.packings == SIDES
     assert [session.packing for session in desk.sessions] == ["mixed", "regular", "auxetic"]
     assert counts(desk) == (3, 3)
     desk.key(pygame.K_2)
     assert said(desk) == words.COMPARE_ALL
-    assert desk.app.run.packings == SIDES
+    assert desk.app.stage.panes.packings == SIDES
     desk.key(pygame.K_c)
     assert alone(desk)
     desk.app.tick()
@@ -76,14 +76,14 @@ def test_compare_and_back(desk: Desk) -> None:
 @pytest.mark.parametrize("side", [0, 1, 2])
 def test_a_press_in_any_canvas_moves_all(desk: Desk, side: int) -> None:
     compare(desk)
-    frame, camera, rect = desk.app.panes()[side]
+    frame, camera, rect = desk.app.stage.picture.panes()[side]
     place = camera.to_screen(frame.handles[0].x, frame.handles[0].y)
     assert rect.collidepoint(place)
     desk.press(place)
-    assert desk.app.mouse.holding
+    assert desk.app.stage.mouse.holding
     for step in range(1, 6):
         desk.point((place[0] + 4 * step, place[1]), pressed=True)
-    wanted = desk.app.mouse.hand.target
+    wanted = desk.app.stage.mouse.hand.target
     assert wanted is not None
     assert wanted[0] == pytest.approx(camera.to_world(place[0] + 20, 0)[0], abs=1.0 / camera.scale)
     desk.release((place[0] + 20, place[1]))
@@ -119,26 +119,26 @@ def test_after_going_back_all_begin_anew(desk: Desk) -> None:
 
 def test_a_build_is_cancelled_by_escape(desk: Desk) -> None:
     gate = threading.Event()
-    make = desk.app.run._make
+    make = desk.app.stage.panes._make
 
     def slow(*arguments: object) -> object:
         session = make(*arguments)
         session.block_build = gate  # type: ignore[attr-defined]
         return session
 
-    desk.app.run._make = slow  # type: ignore[assignment]
+    desk.app.stage.panes._make = slow  # type: ignore[assignment]
     desk.key(pygame.K_c)
-    desk.until(lambda: desk.app.run.snapshots[0].fraction == 0.5)
+    desk.until(lambda: desk.app.stage.panes.snapshots[0].fraction == 0.5)
     for _ in range(3):
         desk.app.tick()  # a canvas without grains yet
     desk.key(pygame.K_ESCAPE)
     assert alone(desk)
     assert desk.page() == "run"
-    desk.app.start("intruder")
-    desk.until(lambda: desk.app.run.snapshot.fraction == 0.5)
+    desk.app.stage.start("intruder")
+    desk.until(lambda: desk.app.stage.panes.snapshot.fraction == 0.5)
     desk.key(pygame.K_ESCAPE)
     assert desk.page() == "menu"
-    assert not desk.app.run.exists
+    assert not desk.app.stage.panes.exists
     gate.set()
 
 
@@ -146,16 +146,16 @@ def test_one_that_fails_says_so_and_reset_builds_all_anew(desk: Desk) -> None:
     compare(desk)
     desk.sessions[2].fail = RuntimeError("a grain got lost")
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.app.run.snapshots[2].phase == "failed")
+    desk.until(lambda: desk.app.stage.panes.snapshots[2].phase == "failed")
     desk.until(lambda: desk.sessions[0].increments > 3)
     desk.key(pygame.K_r)
-    desk.until(lambda: [seen.phase for seen in desk.app.run.snapshots] == ["running"] * 3)
+    desk.until(lambda: [seen.phase for seen in desk.app.stage.panes.snapshots] == ["running"] * 3)
     assert len(desk.sessions) == 6
 
 
 def test_back_goes_only_what_all_can_go(desk: Desk) -> None:
     compare(desk)
-    desk.app.send(Undo())
+    desk.app.stage.send(Undo())
     assert said(desk) == NOT_ALL
     assert all(Undo() not in session.commands for session in desk.sessions)
     near, far = (replace(intruder_frame(6), first_kept=2, last_kept=last) for last in (9, 30))
@@ -168,7 +168,7 @@ def test_back_goes_only_what_all_can_go(desk: Desk) -> None:
 
 
 def test_a_setting_that_cannot_be_is_refused_in_words(desk: Desk) -> None:
-    desk.app.send(Change("grains", -5))
+    desk.app.stage.send(Change("grains", -5))
     assert "grains" in said(desk)
     assert desk.session.commands == []
 
@@ -176,7 +176,7 @@ def test_a_setting_that_cannot_be_is_refused_in_words(desk: Desk) -> None:
 def test_curves_are_kept_and_exported(desk: Desk) -> None:
     compare(desk)
     desk.key(pygame.K_r)
-    assert [kept.packing for kept in desk.app.run.curves.of("intruder")] == list(SIDES)
+    assert [kept.packing for kept in desk.app.stage.panes.curves.of("intruder")] == list(SIDES)
     for _ in range(2):
         desk.key(pygame.K_e)
     names = sorted(path.name for path in Path().iterdir())
@@ -190,8 +190,8 @@ def test_curves_are_kept_and_exported(desk: Desk) -> None:
 def test_a_film_of_the_window_runs_at_a_constant_rate(desk: Desk) -> None:
     desk.key(pygame.K_g)
     assert recording(desk)
-    name = desk.app.recorder._film.name  # type: ignore[union-attr]
-    begun = desk.app.recorder._film.begun  # type: ignore[union-attr]
+    name = desk.app.stage.recorder._film.name  # type: ignore[union-attr]
+    begun = desk.app.stage.recorder._film.begun  # type: ignore[union-attr]
     desk.until(lambda: time.perf_counter() - begun > 1.0)
     passed = time.perf_counter() - begun
     desk.key(pygame.K_g)
@@ -199,7 +199,7 @@ def test_a_film_of_the_window_runs_at_a_constant_rate(desk: Desk) -> None:
     assert not recording(desk)
     film = imageio.v2.mimread(name, memtest=False)
     assert len(film) == pytest.approx(30 * passed, abs=12)
-    assert film[0].shape == (*reversed(desk.app.renderer.size), 3)
+    assert film[0].shape == (*reversed(desk.app.stage.renderer.size), 3)
 
 
 def test_a_film_is_finished_when_the_window_is_closed(desk: Desk) -> None:
@@ -214,10 +214,10 @@ def test_a_film_is_finished_when_the_window_is_closed(desk: Desk) -> None:
 
 def test_a_window_of_another_size_ends_the_film(desk: Desk) -> None:
     desk.key(pygame.K_g)
-    desk.app.renderer.resize((801, 601))
+    desk.app.stage.renderer.resize((801, 601))
     desk.app.tick()
     assert not recording(desk)
-    desk.until(lambda: "mp4" in said(desk) and desk.app.recorder._film is None)
+    desk.until(lambda: "mp4" in said(desk) and desk.app.stage.recorder._film is None)
     assert Path("sandbox-intruder-1.mp4").exists()
 
 
@@ -229,17 +229,17 @@ def test_a_full_disk_is_one_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(record, "VideoWriter", Full)
     desk.key(pygame.K_g)
     desk.until(lambda: "no space left" in said(desk))
-    assert desk.app.running
+    assert desk.app.stage.running
     assert list(Path().iterdir()) == []
 
 
 def test_sound_goes_on_and_off(desk: Desk) -> None:
-    assert not desk.app.sound.on
+    assert not desk.app.stage.sound.on
     desk.key(pygame.K_o)
     assert said(desk) in (words.SOUND_ON, words.NO_SOUND)
-    desk.app.sound.play(("clog", "avalanche", "unheard of"))
+    desk.app.stage.sound.play(("clog", "avalanche", "unheard of"))
     desk.key(pygame.K_o)
-    assert not desk.app.sound.on
+    assert not desk.app.stage.sound.on
 
 
 def test_without_a_sound_device_it_stays_silent(
@@ -251,4 +251,4 @@ def test_without_a_sound_device_it_stays_silent(
     monkeypatch.setattr(pygame.mixer, "init", none)
     desk.key(pygame.K_o)
     assert said(desk) == words.NO_SOUND
-    desk.app.sound.play(("clog",))
+    desk.app.stage.sound.play(("clog",))

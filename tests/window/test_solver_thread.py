@@ -9,8 +9,9 @@ from collections.abc import Iterator
 import pytest
 
 from core.errors import InputError
-from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
-from sandbox.window.solver_thread import SolverThread
+from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.window.solvers.conductor import Conductor
+from sandbox.window.solvers.solver_thread import SolverThread
 from tests.window.fake_session import SLICES, FakeSession, started, wait_until
 
 
@@ -37,7 +38,7 @@ def handle_x(solver: SolverThread) -> float:
 
 
 def test_all_work_is_done_in_the_thread(session: FakeSession, solver: SolverThread) -> None:
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     wait_until(lambda: session.increments > 3)
     assert session.threads.isdisjoint({threading.get_ident()})
     assert len(session.threads) == 1
@@ -46,7 +47,7 @@ def test_all_work_is_done_in_the_thread(session: FakeSession, solver: SolverThre
 def test_progress_of_the_build_is_published() -> None:
     session = FakeSession()
     session.block_build = threading.Event()
-    solver = SolverThread(session)
+    solver = SolverThread(session, Conductor())
     solver.start()
     wait_until(lambda: solver.snapshot.fraction == 0.5)
     seen = solver.snapshot
@@ -60,7 +61,7 @@ def test_progress_of_the_build_is_published() -> None:
 def test_a_build_can_be_broken_off() -> None:
     session = FakeSession()
     session.block_build = threading.Event()
-    solver = SolverThread(session)
+    solver = SolverThread(session, Conductor())
     solver.start()
     begun = time.perf_counter()
     assert solver.stop()
@@ -70,24 +71,24 @@ def test_a_build_can_be_broken_off() -> None:
 
 def test_dragged_handle_arrives(session: FakeSession, solver: SolverThread) -> None:
     start = handle_x(solver)
-    solver.submit(Grab("intruder"))
-    solver.submit(Move("intruder", start + 3.0, 0.0))
+    solver.conductor.submit(Grab("intruder"))
+    solver.conductor.submit(Move("intruder", start + 3.0, 0.0))
     wait_until(lambda: handle_x(solver) == pytest.approx(start + 3.0))
-    solver.submit(Release("intruder"))
+    solver.conductor.submit(Release("intruder"))
     wait_until(lambda: Release("intruder") in session.commands)
     assert session.idle
 
 
 def test_of_many_moves_the_latest_counts(session: FakeSession, solver: SolverThread) -> None:
-    solver.pause(True)
-    solver.submit(Grab("intruder"))
+    solver.conductor.pause(True)
+    solver.conductor.submit(Grab("intruder"))
     for x in range(500):
-        solver.submit(Move("intruder", float(x), 0.0))
-    solver.submit(Release("intruder"))
-    solver.submit(Grab("intruder"))
-    solver.submit(Move("intruder", 5.0, 0.0))
-    solver.submit(Move("intruder", 6.0, 0.0))
-    solver.pause(False)
+        solver.conductor.submit(Move("intruder", float(x), 0.0))
+    solver.conductor.submit(Release("intruder"))
+    solver.conductor.submit(Grab("intruder"))
+    solver.conductor.submit(Move("intruder", 5.0, 0.0))
+    solver.conductor.submit(Move("intruder", 6.0, 0.0))
+    solver.conductor.pause(False)
     wait_until(lambda: len(session.commands) >= 5)
     assert session.commands == [
         Grab("intruder"),
@@ -107,24 +108,24 @@ def test_idle_solver_sleeps(session: FakeSession, solver: SolverThread) -> None:
 def test_pause_finishes_the_increment_and_step_does_one(
     session: FakeSession, solver: SolverThread
 ) -> None:
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     wait_until(lambda: session.increments >= 2)
-    solver.pause(True)
+    solver.conductor.pause(True)
     time.sleep(20 * SLICES * session.slice_time)
     held = session.increments
     time.sleep(0.05)
     assert session.increments == held
     assert_between_increments(session)
     for step in (1, 2):
-        solver.step()
+        solver.conductor.step()
         wait_until(lambda step=step: session.increments == held + step)  # type: ignore[misc]
     time.sleep(0.05)
     assert session.increments == held + 2
-    assert solver.paused
+    assert solver.conductor.paused
     frame = solver.snapshot.frame
     assert frame is not None
     assert frame.increment == held + 2
-    solver.pause(False)
+    solver.conductor.pause(False)
     wait_until(lambda: session.increments > held + 4)
 
 
@@ -132,12 +133,12 @@ def test_step_with_nothing_to_do_is_not_saved_up(
     session: FakeSession, solver: SolverThread
 ) -> None:
     for _ in range(5):
-        solver.step()
+        solver.conductor.step()
     time.sleep(0.05)
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     time.sleep(0.1)
     assert session.increments == 0
-    solver.step()
+    solver.conductor.step()
     wait_until(lambda: session.increments == 1)
     time.sleep(0.05)
     assert session.increments == 1
@@ -147,16 +148,16 @@ def test_step_with_nothing_to_do_is_not_saved_up(
 def test_reset_and_changes_work_while_paused(
     session: FakeSession, solver: SolverThread, command: Reset | Change
 ) -> None:
-    solver.pause(True)
-    solver.submit(command)
+    solver.conductor.pause(True)
+    solver.conductor.submit(command)
     wait_until(lambda: session.commands == [command])
     wait_until(lambda: solver.snapshot.phase == "running")
-    assert solver.paused
+    assert solver.conductor.paused
 
 
 def test_frames_of_a_long_increment_are_shown(session: FakeSession, solver: SolverThread) -> None:
     session.slice_time = 0.03
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     seen: set[bool] = set()
     patience = time.perf_counter() + 5.0
     while not seen >= {True, False} and time.perf_counter() < patience:
@@ -180,7 +181,7 @@ def test_error_is_published_with_the_last_frame(
 ) -> None:
     solver = started(session)
     session.fail = error
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     wait_until(lambda: solver.snapshot.phase == "failed")
     assert words in solver.snapshot.error
     assert solver.snapshot.frame is not None
@@ -190,7 +191,7 @@ def test_error_is_published_with_the_last_frame(
 def test_error_in_the_build_is_published() -> None:
     session = FakeSession()
     session.fail_build = InputError("too few grains")
-    solver = SolverThread(session)
+    solver = SolverThread(session, Conductor())
     solver.start()
     wait_until(lambda: solver.snapshot.phase == "failed")
     assert solver.snapshot.error == "too few grains"
@@ -200,7 +201,7 @@ def test_error_in_the_build_is_published() -> None:
 
 def test_stop_is_quick_and_ends_between_increments(session: FakeSession) -> None:
     solver = started(session)
-    solver.submit(Protocol(True))
+    solver.conductor.submit(Protocol(True))
     wait_until(lambda: session.busy)
     begun = time.perf_counter()
     assert solver.stop()
@@ -210,4 +211,4 @@ def test_stop_is_quick_and_ends_between_increments(session: FakeSession) -> None
 
 
 def test_stop_before_start() -> None:
-    assert SolverThread(FakeSession()).stop()
+    assert SolverThread(FakeSession(), Conductor()).stop()

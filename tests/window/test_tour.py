@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import pygame
 import pytest
 
-from sandbox import tours
-from sandbox.draw import words
 from sandbox.draw.overlays import KNOB
-from sandbox.draw.tour_card import BACK, CLOSE, NEXT
-from sandbox.window.tour import Guide
+from sandbox.draw.pages.tour_card import BACK, CLOSE, NEXT
+from sandbox.lessons import tours
+from sandbox.window.guide import Guide
+from sandbox.words import words
 from tests.window.desk import Desk
 
 
@@ -31,7 +31,7 @@ def touring(desk: Desk) -> Desk:
 
 
 def ready(desk: Desk) -> None:
-    run = desk.app.run
+    run = desk.app.stage.panes
     desk.until(lambda: not desk.app._splash and all(s.phase == "running" for s in run.snapshots))
     desk.app.tick()
 
@@ -44,14 +44,14 @@ def press(desk: Desk, name: str) -> None:
 
 
 def test_start_here_leads_to_three_packings_and_their_tour(desk: Desk) -> None:
-    desk.app.open_menu()
+    desk.app.pages.open_menu()
     desk.until(lambda: not desk.app._splash)
-    assert desk.app.menu.chosen == "start"
+    assert desk.app.pages.menu.chosen == "start"
     desk.key(pygame.K_RETURN)
     ready(desk)
     assert desk.app.guide.on
     assert [session.scene for session in desk.sessions] == ["hopper"] * 3
-    assert desk.app.run.packings == ("regular", "mixed", "auxetic")
+    assert desk.app.stage.panes.packings == ("regular", "mixed", "auxetic")
 
 
 def test_tour_by_its_key_and_from_the_menu(desk: Desk) -> None:
@@ -72,15 +72,15 @@ def test_a_step_is_done_by_doing_it(touring: Desk) -> None:
     assert guide.page.onward == words.TOUR_WHY  # it explains before it goes on
     start = touring.handle_place()
     touring.press(start)
-    assert touring.app.mouse.holding
-    scale = touring.app.renderer.camera.scale
+    assert touring.app.stage.mouse.holding
+    scale = touring.app.stage.renderer.camera.scale
     touring.point((start[0] + 4.0 * scale, start[1]), pressed=True)
     touring.until(lambda: guide.done)
     assert guide.page.why == words.tour_text("intruder", "drag", "why")
     touring.release((start[0] + 4.0 * scale, start[1]))
     touring.key(pygame.K_RETURN)
     assert (guide.index, guide.done) == (1, False)
-    assert touring.app.renderer.view.name == "chains"
+    assert touring.app.stage.renderer.view.name == "chains"
 
 
 def test_every_step_by_keyboard_alone(touring: Desk) -> None:
@@ -109,7 +109,7 @@ def test_back_and_close_by_keyboard(touring: Desk) -> None:
 
 
 def test_buttons_by_tab(touring: Desk) -> None:
-    guide, focus = touring.app.guide, touring.app.focus
+    guide, focus = touring.app.guide, touring.app.stage.focus
     while focus.name != NEXT:
         touring.key(pygame.K_TAB)
     touring.key(pygame.K_SPACE, " ")
@@ -128,23 +128,23 @@ def test_buttons_by_mouse(touring: Desk) -> None:
         ready(touring)
         assert (guide.index, guide.done) == expected
     touring.press(guide.rect.center)  # the card lets nothing through
-    assert not touring.app.mouse.holding
+    assert not touring.app.stage.mouse.holding
     press(touring, CLOSE)
     assert not guide.on
 
 
 def test_another_scene_ends_the_tour(touring: Desk) -> None:
-    touring.app.start("hopper")
+    touring.app.stage.start("hopper")
     touring.app.tick()
     assert not touring.app.guide.on
 
 
 def covered(guide: Guide) -> bool:
-    scale = guide.app.renderer.scale
+    scale = guide.stage.renderer.scale
     near = guide.rect.inflate(2 * KNOB * scale, 2 * KNOB * scale)  # a knob and its rim
     return any(
         near.collidepoint(camera.to_screen(handle.x, handle.y))
-        for frame, camera, _ in guide.app.panes()
+        for frame, camera, _ in guide.stage.picture.panes()
         for handle in frame.handles
     )
 
@@ -155,12 +155,12 @@ def test_the_card_hides_no_handle_and_stays_in_the_window(touring: Desk, folded:
     if folded:
         app.panel.drawer.switch()
     for scale, _ in itertools.product((1.0, 1.5, 2.0), range(2)):
-        app.renderer.resize(app.renderer.size, scale)
+        app.stage.renderer.resize(app.stage.renderer.size, scale)
         app.tick()
-        assert app.screen.get_rect().contains(guide.rect)
+        assert app.stage.screen.get_rect().contains(guide.rect)
         assert not covered(guide)
         if guide.docked:
             assert not guide.rect.colliderect(app.panel.rect)
-            assert app.renderer.layout.panel.contains(guide.rect)
+            assert app.stage.renderer.layout.panel.contains(guide.rect)
         guide.next()
         ready(touring)

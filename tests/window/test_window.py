@@ -12,10 +12,12 @@ import pygame
 import pytest
 
 from core.errors import InputError
-from sandbox import language
-from sandbox.commands import Change, Grab, Move, Protocol, Release, Reset
-from sandbox.draw import words
+from sandbox.files.log_file import read_log
+from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.session.log import Log
 from sandbox.window import display
+from sandbox.window.solvers import panes
+from sandbox.words import language, words
 from scenes import registry
 from tests.window.desk import Desk
 
@@ -34,20 +36,20 @@ def running(desk: Desk) -> Desk:
 
 
 def test_splash_is_drawn_while_building(desk: Desk) -> None:
-    desk.app.start("intruder")
+    desk.app.stage.start("intruder")
     desk.app.tick()
-    assert desk.app.run.snapshot.phase in ("building", "running")
-    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+    assert desk.app.stage.panes.snapshot.phase in ("building", "running")
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase == "running")
 
 
 def test_drag_grabs_moves_and_releases(running: Desk) -> None:
     start = running.handle_place()
     running.press((start[0] + 5, start[1]))
-    assert running.app.mouse.holding
+    assert running.app.stage.mouse.holding
     for step in range(1, 9):
         running.point((start[0] + 5 + 10 * step, start[1]), pressed=True)
-    scale = running.app.renderer.camera.scale
-    wanted = running.app.renderer.camera.to_world(start[0], start[1])[0] + 80 / scale
+    scale = running.app.stage.renderer.camera.scale
+    wanted = running.app.stage.renderer.camera.to_world(start[0], start[1])[0] + 80 / scale
     running.until(lambda: abs(running.session.frame().handles[0].x - wanted) < 0.6 / scale)
     running.release((start[0] + 85, start[1]))
     running.until(lambda: Release("intruder") in running.session.commands)
@@ -55,7 +57,7 @@ def test_drag_grabs_moves_and_releases(running: Desk) -> None:
     assert commands[0] == Grab("intruder")
     moves = [command for command in commands if isinstance(command, Move)]
     assert moves[-1].x == pytest.approx(wanted, abs=0.6 / scale)  # no jump by the grip's offset
-    assert not running.app.mouse.holding
+    assert not running.app.stage.mouse.holding
 
 
 def test_press_beside_the_handle_does_nothing(running: Desk) -> None:
@@ -66,20 +68,20 @@ def test_press_beside_the_handle_does_nothing(running: Desk) -> None:
 
 def test_hover_changes_the_cursor(running: Desk) -> None:
     running.point(running.handle_place())
-    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_HAND
+    assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_HAND
     running.press(running.handle_place())
-    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_SIZEALL
+    assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_SIZEALL
     running.release(running.handle_place())
     running.point((3, 300))
-    assert running.app.mouse.cursor() == pygame.SYSTEM_CURSOR_ARROW
+    assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_ARROW
 
 
 def test_dragging_out_of_the_window_stops_at_the_canvas_edge(running: Desk) -> None:
     running.press(running.handle_place())
     running.point((5000, 250), pressed=True)
-    target = running.app.mouse.hand.target
+    target = running.app.stage.mouse.hand.target
     assert target is not None
-    edge = running.app.renderer.camera.to_world(800, 0)[0]
+    edge = running.app.stage.renderer.camera.to_world(800, 0)[0]
     assert target[0] <= edge + 1.0
 
 
@@ -129,7 +131,7 @@ def test_views_in_turn(running: Desk) -> None:
     seen = []
     for _ in range(len(words.VIEWS)):
         running.key(pygame.K_v)
-        renderer = running.app.renderer
+        renderer = running.app.stage.renderer
         seen.append(renderer.view.name)
         assert renderer.chains == renderer.view.chains
         running.key(pygame.K_f)  # where chains are all there is to see they stay
@@ -140,14 +142,14 @@ def test_views_in_turn(running: Desk) -> None:
 
 def test_chains_theme_scale_and_help(running: Desk) -> None:
     running.key(pygame.K_f)
-    assert not running.app.renderer.chains
+    assert not running.app.stage.renderer.chains
     running.key(pygame.K_t)
-    assert running.app.renderer.theme.name == "light"
+    assert running.app.stage.renderer.theme.name == "light"
     running.key(pygame.K_PLUS, "+")
-    assert running.app.renderer.scale == 1.25
+    assert running.app.stage.renderer.scale == 1.25
     running.key(pygame.K_MINUS, "-")
     running.key(pygame.K_MINUS, "-")
-    assert running.app.renderer.scale == 1.0
+    assert running.app.stage.renderer.scale == 1.0
     running.key(pygame.K_F1)
     assert running.page() == "help"
     running.key(pygame.K_ESCAPE)
@@ -155,49 +157,49 @@ def test_chains_theme_scale_and_help(running: Desk) -> None:
 
 
 def test_menu_by_keyboard(desk: Desk) -> None:
-    desk.app.open_menu()
+    desk.app.pages.open_menu()
     desk.until(lambda: not desk.app._splash)
     desk.app.tick()
-    assert desk.app.menu.chosen == "start"
+    assert desk.app.pages.menu.chosen == "start"
     desk.key(pygame.K_2)
     desk.key(pygame.K_DOWN)
     desk.key(pygame.K_TAB)
     desk.post(pygame.KEYDOWN, key=pygame.K_TAB, unicode="", mod=pygame.KMOD_LSHIFT)
     desk.key(pygame.K_RIGHT)
     names = registry.names()
-    assert desk.app.menu.chosen == f"scene/{names[1]}"
+    assert desk.app.pages.menu.chosen == f"scene/{names[1]}"
     desk.key(pygame.K_RETURN)
-    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase == "running")
     assert (desk.session.scene, desk.session.packing) == (names[1], "auxetic")
     assert desk.page() == "run"
 
 
 def test_tab_goes_through_the_whole_menu_and_shows_it(running: Desk) -> None:
     running.key(pygame.K_m)
-    first = running.app.menu.chosen
+    first = running.app.pages.menu.chosen
     seen: list[str] = []
-    while not seen or running.app.menu.chosen != first:
+    while not seen or running.app.pages.menu.chosen != first:
         running.key(pygame.K_TAB)
-        seen.append(running.app.menu.chosen)
-        place = running.app.menu.place_of(seen[-1])
+        seen.append(running.app.pages.menu.chosen)
+        place = running.app.pages.menu.place_of(seen[-1])
         assert place is not None
-        assert running.app.screen.get_rect().contains(place)
+        assert running.app.stage.screen.get_rect().contains(place)
     assert {name.partition("/")[0] for name in seen} >= {"start", "scene", "packing", "language"}
     assert len(seen) == len(set(seen)) >= len(registry.names()) + 5
 
 
 def test_chips_of_the_menu_switch_theme_language_and_open_the_keys(running: Desk) -> None:
-    menu = running.app.menu
+    menu = running.app.pages.menu
     running.key(pygame.K_m)
     for chip, expected in (("theme", "light"), ("language", "de"), ("keys", "help")):
         place = menu.place_of(chip)
         assert place is not None
         running.press(place.center)
-        now = (running.app.renderer.theme.name, language.present())
-        assert expected in (*now, "help" if running.app.show_help else "")
+        now = (running.app.stage.renderer.theme.name, language.present())
+        assert expected in (*now, "help" if running.app.stage.show_help else "")
     running.key(pygame.K_ESCAPE)
     running.key(pygame.K_l)
-    assert (running.page(), running.app.show_help) == ("menu", False)
+    assert (running.page(), running.app.stage.show_help) == ("menu", False)
     assert language.present() == "en"
 
 
@@ -213,12 +215,12 @@ def test_menu_by_mouse_and_back(running: Desk) -> None:
     for _ in registry.names():
         running.key(pygame.K_UP)
     first = registry.names()[0]
-    place = running.app.menu.place_of(first)
+    place = running.app.pages.menu.place_of(first)
     assert place is not None
     running.point(place.center)
-    assert running.app.menu.cursor() == pygame.SYSTEM_CURSOR_HAND
+    assert running.app.pages.menu.cursor() == pygame.SYSTEM_CURSOR_HAND
     running.press(place.center)
-    running.until(lambda: running.app.run.snapshot.phase == "running")
+    running.until(lambda: running.app.stage.panes.snapshot.phase == "running")
     assert [session.scene for session in running.sessions] == ["intruder", first]
 
 
@@ -232,7 +234,9 @@ def test_scene_files_of_the_folder_are_in_the_menu(
     monkeypatch.chdir(tmp_path)
     running.key(pygame.K_m)
     files = [
-        card for card in running.app.menu.contents("mixed", "dark").cards if "file/" in card.name
+        card
+        for card in running.app.pages.menu.contents("mixed", "dark").cards
+        if "file/" in card.name
     ]
     assert [(card.title, card.picture) for card in files] == [("my bridge", "hopper")]
 
@@ -240,9 +244,9 @@ def test_scene_files_of_the_folder_are_in_the_menu(
 def test_packing_looked_at_in_the_menu_only_is_forgotten(running: Desk) -> None:
     running.key(pygame.K_m)
     running.key(pygame.K_1)
-    assert running.app.run.packing == "regular"
+    assert running.app.stage.panes.packing == "regular"
     running.key(pygame.K_m)
-    assert running.app.run.packing == "mixed"
+    assert running.app.stage.panes.packing == "mixed"
 
 
 def test_escape_leads_to_the_menu_then_out(running: Desk) -> None:
@@ -255,21 +259,21 @@ def test_escape_leads_to_the_menu_then_out(running: Desk) -> None:
 def test_failure_is_shown_and_reset_builds_anew(running: Desk) -> None:
     running.session.fail = RuntimeError("a grain got lost")
     running.key(pygame.K_a)
-    running.until(lambda: running.app.run.snapshot.phase == "failed")
+    running.until(lambda: running.app.stage.panes.snapshot.phase == "failed")
     running.app.tick()
     running.key(pygame.K_SPACE)  # nothing but reset, menu and quit make sense now
     running.key(pygame.K_r)
-    running.until(lambda: running.app.run.snapshot.phase == "running")
+    running.until(lambda: running.app.stage.panes.snapshot.phase == "running")
     assert len(running.sessions) == 2
 
 
 def test_failed_build_is_shown(desk: Desk) -> None:
-    desk.app.start("intruder")
+    desk.app.stage.start("intruder")
     desk.session.fail_build = InputError("too few grains to fill the funnel")
-    desk.until(lambda: desk.app.run.snapshot.phase in ("failed", "running"))
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase in ("failed", "running"))
     for _ in range(3):
         desk.app.tick()
-    assert desk.app.running
+    assert desk.app.stage.running
 
 
 def test_screenshot_has_a_free_name(
@@ -293,29 +297,29 @@ def test_screenshot_that_cannot_be_saved_says_so(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(display, "atomic_write", full)
     running.key(pygame.K_F12)
-    assert "No space left" in running.app.notices.latest
+    assert "No space left" in running.app.stage.notices.latest
     assert list(tmp_path.iterdir()) == []
 
 
 def test_resizing_redraws_at_the_new_size(running: Desk) -> None:
-    running.app.screen = pygame.display.set_mode((1000, 700), pygame.RESIZABLE)
+    running.app.stage.screen = pygame.display.set_mode((1000, 700), pygame.RESIZABLE)
     running.post(pygame.WINDOWSIZECHANGED, x=1000, y=700)
-    assert running.app.renderer.size == (1000, 700)
+    assert running.app.stage.renderer.size == (1000, 700)
 
 
 def test_events_of_an_unbuilt_scene_do_no_harm(desk: Desk) -> None:
-    desk.app.start("intruder")
+    desk.app.stage.start("intruder")
     for key in (pygame.K_r, pygame.K_a, pygame.K_s, pygame.K_SPACE, pygame.K_f, pygame.K_h):
         desk.key(key)
     desk.press((400, 300))
     desk.release((400, 300))
-    desk.until(lambda: desk.app.run.snapshot.phase == "running")
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase == "running")
 
 
 def test_hint_until_the_first_grab(running: Desk) -> None:
-    assert running.app.notices.lines("") == (words.HINT,)
+    assert running.app.stage.notices.lines("") == (words.HINT,)
     running.press(running.handle_place())
-    assert running.app.notices.lines("") == ()
+    assert running.app.stage.notices.lines("") == ()
 
 
 def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
@@ -324,7 +328,7 @@ def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
     desk.key(pygame.K_a)
     desk.until(lambda: desk.session.increments > 1)
     desk.app.close(tmp_path / "run.jsonl")
-    assert desk.session.logged == str(tmp_path / "run.jsonl")
+    assert read_log(tmp_path / "run.jsonl").end == desk.session.increments
     assert not desk.session.busy
 
 
@@ -335,7 +339,7 @@ def test_quit_ends_the_loop(running: Desk) -> None:
 
 def test_unknown_scene_is_an_input_error(desk: Desk) -> None:
     with pytest.raises(InputError, match="unknown"):
-        desk.app.start("unknown")
+        desk.app.stage.start("unknown")
 
 
 def test_no_display_is_one_plain_line(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -377,14 +381,16 @@ def test_rate_says_what_holds_it_up() -> None:
     assert "drawing takes 50 ms" in rate.text
 
 
-def test_log_that_cannot_be_written_is_an_input_error(tmp_path: Path) -> None:
+def test_log_that_cannot_be_written_is_an_input_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     desk = Desk()
     desk.start()
 
-    def full(path: str) -> None:
+    def full(path: Path, log: Log) -> None:
         raise OSError(28, "No space left on device")
 
-    desk.session.write_log = full  # type: ignore[method-assign]
+    monkeypatch.setattr(panes, "write_log", full)
     with pytest.raises(InputError, match="No space left"):
         desk.app.close(tmp_path / "run.jsonl")
 

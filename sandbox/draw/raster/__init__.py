@@ -15,21 +15,13 @@ Those for one small shape keep the interpreter's lock: they take microseconds, a
 back from a busy solver can take milliseconds.
 """
 
+from core.arrays import Floats
 from sandbox.draw.raster.ellipses import draw_ellipses
 from sandbox.draw.raster.hulls import draw_hull
 from sandbox.draw.raster.lines import draw_few_lines, draw_lines, draw_ring
 from sandbox.draw.raster.made_grains import WALL, draw_made_grains
 from sandbox.draw.raster.marks import draw_bow_ties
-from sandbox.draw.raster.pixels import (
-    Canvas,
-    Clip,
-    Colours,
-    Flags,
-    Floats,
-    Grains,
-    Pixels,
-    ToScreen,
-)
+from sandbox.draw.raster.pixels import Canvas, Clip, Colours, Flags, Grains, Pixels, ToScreen
 
 __all__ = [
     "WALL",

@@ -6,18 +6,9 @@ import math
 
 import numpy as np
 
+from core.arrays import Floats
 from core.jit import kernel
-from sandbox.draw.raster.pixels import (
-    Canvas,
-    Floats,
-    ToScreen,
-    coverage,
-    first_pixel,
-    mix,
-    put,
-    sane,
-    span,
-)
+from sandbox.draw.raster.pixels import Canvas, ToScreen, coverage, first_pixel, mix, put, sane, span
 
 
 @kernel

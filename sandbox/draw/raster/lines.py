@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from core.arrays import Floats
 from core.jit import kernel
-from sandbox.draw.raster.pixels import Canvas, Colours, Floats, coverage, first_pixel, put, sane
+from sandbox.draw.raster.pixels import Canvas, Colours, coverage, first_pixel, put, sane
 
 
 @kernel

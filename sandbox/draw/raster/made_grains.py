@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
+from core.arrays import Floats
 from core.jit import kernel
 from sandbox.draw.raster.pixels import (
     Canvas,
     Colours,
     Flags,
-    Floats,
     Grains,
     coverage,
     first_pixel,

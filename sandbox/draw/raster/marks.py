@@ -4,17 +4,9 @@ from __future__ import annotations
 
 import math
 
+from core.arrays import Floats
 from core.jit import kernel
-from sandbox.draw.raster.pixels import (
-    Canvas,
-    Flags,
-    Floats,
-    Grains,
-    coverage,
-    first_pixel,
-    put,
-    sane,
-)
+from sandbox.draw.raster.pixels import Canvas, Flags, Grains, coverage, first_pixel, put, sane
 from sandbox.draw.raster.unit_disc import to_unit_disc
 
 

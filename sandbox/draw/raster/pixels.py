@@ -7,11 +7,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.jit import kernel
 
 Pixels = NDArray[np.uint32]
 Colours = NDArray[np.uint32]
-Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Clip = tuple[int, int, int, int]
 ToScreen = tuple[float, float, float]

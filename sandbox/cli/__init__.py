@@ -1,0 +1,1 @@
+"""The command line: words to options to exit codes."""

@@ -1,0 +1,280 @@
+"""The command line: list, play, record, replay, bench, study.
+
+Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
+before anything is compiled.
+"""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import os
+import sys
+from collections.abc import Callable, Sequence
+
+from core.errors import InputError, nearest
+from sandbox import __version__
+from sandbox.cli import arguments, verbs
+from sandbox.cli import study as studies
+from sandbox.cli.arguments import Parser, argument
+from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
+from scenes.parameter import LARGEST_SEED
+
+PROGRAM = "python -m sandbox"
+Command = Callable[[str, Callable[[argparse.Namespace], int], str], Parser]
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return the exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        options = parse(words)
+        command: Callable[[argparse.Namespace], int] = options.run
+        return command(options)
+    except InputError as error:
+        print(f"error: {arguments.one_line(str(error))}", file=sys.stderr)
+        return USER_MISTAKE
+    except KeyboardInterrupt:
+        print("stopped: nothing was written", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read the output (head, a pager) has seen enough. Python flushes once more at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return OK
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        where = f" for {error.filename}" if error.filename else ""
+        print(f"error: no room left on the disk{where}: free some and try again", file=sys.stderr)
+        return USER_MISTAKE
+
+
+def parse(words: Sequence[str]) -> argparse.Namespace:
+    """The options of the command, with ``run`` the function that carries it out."""
+    parser, commands = parsers()
+    first = words[0] if words else "play"
+    if not first.startswith("-") and first not in commands:
+        raise InputError(f"unknown command {first!r}{_meant_command(first, commands)}")
+    options, leftovers = parser.parse_known_args(words or ["play"])
+    if "command" not in options or options.command is None:
+        parser.refuse_leftovers(leftovers)
+        raise InputError(f"no command given: use {', '.join(commands)}; see {PROGRAM} --help")
+    commands[options.command].refuse_leftovers(leftovers)
+    return options
+
+
+def parsers() -> tuple[Parser, dict[str, Parser]]:
+    """The parser of the whole command line, and that of each command."""
+    parser = Parser(
+        prog=PROGRAM,
+        description="Push and pull deformable grains, regular and auxetic, and watch the forces.",
+        epilog="Without a command: play, starting with the menu of scenes.",
+    )
+    parser.add_argument("--version", action="version", version=f"auxetic-sandbox {__version__}")
+    choices = parser.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
+    commands: dict[str, Parser] = {}
+
+    def command(name: str, run: Callable[[argparse.Namespace], int], text: str) -> Parser:
+        commands[name] = choices.add_parser(name, help=text, description=text)
+        commands[name].set_defaults(run=run)
+        return commands[name]
+
+    for add in (_add_listing, _add_play, _add_record, _add_replay, _add_bench, _add_study):
+        add(command)
+    return parser, commands
+
+
+def _add_listing(command: Command) -> None:
+    listing = command(
+        "list", verbs.list_scenes, "Print the scenes, their packings and their parameters."
+    )
+    listing.add_argument("--json", action="store_true", help="print the same as JSON")
+
+
+def _add_play(command: Command) -> None:
+    play = command("play", verbs.play, "Open a window; grab a handle with the mouse and move it.")
+    play.add_argument(
+        "scene",
+        nargs="?",
+        metavar="SCENE",
+        help="name of a scene, or a scene file FILE.toml; without it: a menu",
+    )
+    _add_scene_options(play)
+    _add_compare(play)
+    play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
+    _add_size(play)
+    play.add_argument(
+        "--scale",
+        type=argument(arguments.number(0.5, 4.0)),
+        metavar="FACTOR",
+        help="size of letters and controls, 0.5 to 4 (default: by the screen's size)",
+    )
+    _add_look(play, "that of this computer, if there is a choice")
+
+
+def _add_record(command: Command) -> None:
+    record = command(
+        "record", verbs.record, "Run a scene by itself, and write a film, a table or both."
+    )
+    record.add_argument(
+        "scene",
+        metavar="SCENE",
+        help="one of the names that `list` prints, or a scene file FILE.toml",
+    )
+    record.add_argument(
+        "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"
+    )
+    record.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_scene_options(record)
+    _add_compare(record)
+    record.add_argument(
+        "--steps",
+        type=argument(arguments.whole_number(1, arguments.MOST_STEPS)),
+        metavar="N",
+        help="increments to run, a frame each (default: the scene's whole protocol)",
+    )
+    _add_size(record)
+    _add_look(record)
+    record.add_argument(
+        "--fps",
+        type=argument(arguments.number(1.0, max(arguments.HIGHEST_FPS.values()))),
+        default=30.0,
+        metavar="N",
+        help="frames a second (default: 30)",
+    )
+
+    record.add_argument(
+        "--every",
+        type=argument(arguments.whole_number(1, 1000)),
+        default=1,
+        metavar="N",
+        help="a frame for every N increments (default: 1)",
+    )
+
+
+def _add_replay(command: Command) -> None:
+    replay = command(
+        "replay", verbs.replay, "Repeat a logged run; say whether it came out the same."
+    )
+    replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
+    replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
+    replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_look(replay)
+
+
+def _add_bench(command: Command) -> None:
+    bench = command("bench", verbs.bench, "Measure how fast the program is on this machine.")
+    bench.add_argument("--json", metavar="FILE.json", help="write all numbers down")
+    bench.add_argument("--markdown", metavar="FILE.md", help="write the results as a table")
+    bench.add_argument(
+        "--peers",
+        action="store_true",
+        help="also run LAMMPS, ASE and SciPy on the same soft discs, where they are installed",
+    )
+    bench.add_argument("--quick", action="store_true", help="under half a minute, less exact")
+
+
+def _add_study(command: Command) -> None:
+    study = command("study", verbs.study, "Measure, and write tables and figures.")
+    study.add_argument(
+        "name",
+        metavar="NAME",
+        type=argument(arguments.one_of(*studies.STUDIES)),
+        help=arguments.any_of(list(studies.STUDIES)),
+    )
+    study.add_argument(
+        "--out", metavar="DIR", required=True, help="folder for results; what is there is kept"
+    )
+    study.add_argument("--quick", action="store_true", help="fewer seeds, smaller packings")
+    study.add_argument(
+        "--only", nargs="+", metavar="CLAIM", help="these claims instead of all (paper)"
+    )
+    study.add_argument(
+        "--scene", nargs="+", metavar="NAME", help="these scenes instead of all (accuracy)"
+    )
+    study.add_argument(
+        "--jobs",
+        type=argument(arguments.whole_number(1, 64)),
+        default=2,
+        metavar="N",
+        help="runs at the same time (default: 2)",
+    )
+
+
+def _add_scene_options(parser: Parser) -> None:
+    parser.add_argument(
+        "--packing",
+        metavar="NAME",
+        help="kinds of grains: regular, auxetic or mixed (default)",
+    )
+    parser.add_argument(
+        "--seed",
+        type=argument(arguments.whole_number(0, LARGEST_SEED)),
+        metavar="N",
+        help="of the random packing (default: 1)",
+    )
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="set a parameter of the scene; may be repeated",
+    )
+
+
+def _add_compare(parser: Parser) -> None:
+    parser.add_argument(
+        "--compare",
+        type=argument(arguments.packings),
+        metavar="NAME,NAME[,NAME]",
+        help="packings side by side under one hand, such as regular,mixed,auxetic",
+    )
+
+
+def _add_size(parser: Parser) -> None:
+    parser.add_argument(
+        "--size",
+        type=argument(arguments.size),
+        default=(1280, 720),
+        metavar="WxH",
+        help="in pixels (default: 1280x720)",
+    )
+
+
+def _add_look(parser: Parser, language_default: str = "en") -> None:
+    from sandbox.words import language
+    from sandbox.words.words import VIEWS
+
+    parser.add_argument(
+        "--view",
+        type=argument(arguments.one_of(*VIEWS)),
+        default="kind",
+        metavar="NAME",
+        help=f"what the grains show: {', '.join(VIEWS)} (default: kind)",
+    )
+    parser.add_argument(
+        "--theme",
+        type=argument(arguments.one_of("dark", "light")),
+        default="dark",
+        metavar="NAME",
+        help="dark (default), or light for a bright room",
+    )
+    parser.add_argument(
+        "--language",
+        type=argument(arguments.one_of(*language.available())),
+        metavar="NAME",
+        help=f"of the words in the picture: {', '.join(language.available())} "
+        f"(default: {language_default})",
+    )
+
+
+def _meant_command(word: str, commands: dict[str, Parser]) -> str:
+    """People also write the name of a scene where a command is due."""
+    from scenes import registry
+
+    scenes = registry.names()
+    meant = nearest(word, [*commands, *scenes])
+    if meant in scenes:
+        return f" (did you mean play {meant}?)"
+    return f" (did you mean {meant}?)" if meant else f": use {', '.join(commands)}"

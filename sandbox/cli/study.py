@@ -1,0 +1,120 @@
+"""The studies that ``study NAME`` can run: each reads the options of the command line and returns an exit code.
+
+Light at the top, as the command line is; a study imports what it needs when it runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+
+from core.errors import InputError
+from sandbox.cli.exit_codes import FAILED, INTERRUPTED, OK
+
+Study = Callable[[argparse.Namespace], int]
+
+
+def paper(options: argparse.Namespace) -> int:
+    """Judge the claims of the paper."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
+    from sandbox.studies.paper import study
+
+    study.choose(options.only)
+    require_matplotlib()
+    folder = prepare_folder(options.out)
+    with stop_like_ctrl_c():
+        outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
+    if outcome.interrupted:
+        return stopped(outcome.runs)
+    width = max(len(row.claim.name) for row in outcome.judged)
+    for row in outcome.judged:
+        print(f"{row.claim.name:<{width}}  {study.summary(row.finding)}")
+    print(f"table, numbers and figures: {folder / 'claims.md'}, results.json, *.png")
+    return OK
+
+
+def accuracy(options: argparse.Namespace) -> int:
+    """Measure error against run time."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.accuracy import study
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
+
+    study.choose(options.scene)
+    require_matplotlib()
+    require_scipy()
+    folder = prepare_folder(options.out)
+    with stop_like_ctrl_c():
+        outcome = study.study(folder, scenes=options.scene, quick=options.quick, jobs=options.jobs)
+    if outcome.interrupted:
+        return stopped(outcome.jobs)
+    for name, words in (*outcome.statements.items(), *outcome.failures.items()):
+        print(f"{name:<18}{words}")
+    print(f"tables, numbers and plots: {folder / 'accuracy.md'}, results.json, *.png")
+    return FAILED if outcome.failures else OK
+
+
+def stability(options: argparse.Namespace) -> int:
+    """Carry out the hard cases."""
+    from collections import Counter
+
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
+    from sandbox.studies.stability import study
+    from sandbox.studies.stability.case import FAILS
+
+    require_matplotlib()
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    if done.interrupted:
+        return stopped(len(done.outcomes))
+    verdicts = Counter(outcome.verdict for outcome in done.outcomes)
+    counts = ", ".join(f"{count} {verdict}" for verdict, count in sorted(verdicts.items()))
+    print(f"{len(done.outcomes)} cases: {counts}")
+    print(f"table, numbers and figures: {folder / 'stability.md'}, results.json, *.png")
+    return FAILED if verdicts[FAILS] else OK
+
+
+def hand(options: argparse.Namespace) -> int:
+    """Measure what a hand can move, play every tour, let random hands loose."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.common.folder import prepare_folder, require_scipy
+    from sandbox.studies.hand import study
+    from sandbox.studies.hand.report import wrong
+
+    require_scipy()
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    if done.interrupted:
+        return stopped(len(done.rows))
+    found = [*wrong(done.rows), *done.failures]
+    for line in found:
+        print(line)
+    print(f"{len(done.rows)} runs: {len(found) or 'nothing'} not as it should be")
+    print(f"tables and numbers: {folder / 'hand.md'}, runs.csv, results.json")
+    return FAILED if found else OK
+
+
+def stopped(runs: int) -> int:
+    """Say that a study was interrupted after so many runs; the exit code for that."""
+    print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
+    return INTERRUPTED
+
+
+def refuse_foreign_options(options: argparse.Namespace) -> None:
+    """Raise InputError for an option that belongs to another study."""
+    for name, study in OWN_OPTIONS.items():
+        if options.name != study and getattr(options, name):
+            raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
+
+
+STUDIES: dict[str, Study] = {
+    "paper": paper,
+    "accuracy": accuracy,
+    "stability": stability,
+    "hand": hand,
+}
+OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}

@@ -1,0 +1,261 @@
+"""What each command does: from checked options to an exit code.
+
+Only light modules are imported at the top, as in ``cli``; heavy ones where a command has found no mistake.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from core.errors import InputError
+from sandbox.cli import arguments
+from sandbox.cli import study as studies
+from sandbox.cli.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
+
+if TYPE_CHECKING:
+    from sandbox.record.record import Outcome, Output
+    from sandbox.session.beginning import SceneFile
+    from sandbox.session.session import Session
+
+FILM_SUFFIXES = (".mp4", ".gif", ".png")
+
+
+def list_scenes(options: argparse.Namespace) -> int:
+    """Print the scenes and what they know."""
+    from sandbox.cli import listing
+    from scenes import registry
+
+    scenes = [registry.get(name) for name in registry.names()]
+    print(listing.as_json(scenes) if options.json else listing.as_text(scenes), flush=True)
+    return OK
+
+
+def play(options: argparse.Namespace) -> int:
+    """Open the window, with a scene or the menu."""
+    from sandbox import environment
+    from sandbox.words import language
+
+    language.use(options.language or language.of_environment())
+    log = arguments.output_file("--log", options.log, [".jsonl"]) if options.log else None
+    if options.scene is None:
+        if options.set:
+            raise InputError("--set needs a scene: write play SCENE --set NAME=VALUE")
+        if options.compare:
+            raise InputError("--compare needs a scene: write play SCENE --compare NAME,NAME")
+        _check_packing_of_some_scene(_packing(options))
+        settings: dict[str, object] = {}
+        scene: str | SceneFile | None = None
+    else:
+        session = _sessions(options)[0]
+        settings = dict(session.settings)
+        scene = session.file or session.scene.name
+        if session.file and options.compare:
+            raise InputError("--compare: open the scene file without it, then press C")
+    environment.require_pygame_ce()
+    environment.require_display()
+    from sandbox.window import app
+    from sandbox.window.display import Looks
+
+    return app.run(
+        scene,
+        _packing(options),
+        _seed(options),
+        settings,
+        log=log,
+        packings=options.compare or (),
+        looks=Looks(options.size, options.scale, options.theme, options.view),
+    )
+
+
+def record(options: argparse.Namespace) -> int:
+    """Make a film, a table or both, of one packing or of several side by side."""
+    output = _output(options, options.size, options.fps, options.every)
+    if output is None:
+        raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
+    sessions = _sessions(options)
+    steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.record import record as films
+
+    with stop_like_ctrl_c():
+        outcome = films.record(sessions, steps, output)
+    all_hold = _report(sessions, outcome, output)
+    if outcome.interrupted:
+        return INTERRUPTED
+    return OK if all_hold else CHECK_FAILED
+
+
+def replay(options: argparse.Namespace) -> int:
+    """Repeat what a log says, and compare where it leads."""
+    from sandbox.files.log_file import read_log
+
+    output = _output(options, (1280, 720), 30.0)
+    log = read_log(options.log)
+    from sandbox.session.replay import session_of
+
+    session_of(log)  # finds mistakes before any work
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.record.record import repeat
+
+    with stop_like_ctrl_c():
+        session, outcome = repeat(log, output)
+    _report([session], outcome, output)
+    if outcome.interrupted:
+        return INTERRUPTED
+    same = session.state_hash() == log.hash
+    print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
+    return OK if same else DIFFERENT
+
+
+def bench(options: argparse.Namespace) -> int:
+    """Measure the speed, and say which targets were missed."""
+    data = arguments.output_file("--json", options.json, [".json"]) if options.json else None
+    table = (
+        arguments.output_file("--markdown", options.markdown, [".md"]) if options.markdown else None
+    )
+    from sandbox import environment
+
+    environment.require_pygame_ce()
+    from core.files import atomic_write
+    from sandbox.studies.bench import bench as benchmark
+    from sandbox.studies.bench import report as bench_report
+
+    def show(section: bench_report.Section) -> None:
+        print(f"{bench_report.as_text(section)}\n", flush=True)
+
+    report = benchmark.run(quick=options.quick, peers=options.peers, show=show)
+    for path, form in ((data, bench_report.as_json), (table, bench_report.as_markdown)):
+        if path is not None:
+            with atomic_write(path) as file:
+                file.write(form(report).encode())
+    missed = len(report.missed())
+    noun = "target" if missed == 1 else "targets"
+    print(f"{missed} {noun} missed" if missed else "all targets met")
+    return OK
+
+
+def study(options: argparse.Namespace) -> int:
+    """Carry out one of the studies."""
+    studies.refuse_foreign_options(options)
+    return studies.STUDIES[options.name](options)
+
+
+def _output(
+    options: argparse.Namespace, size: tuple[int, int], fps: float, every: int = 1
+) -> Output | None:
+    """Where to write, checked; None if nothing is asked for."""
+    from sandbox.record.record import Output
+    from sandbox.words import language
+
+    language.use(options.language or language.SOURCE)
+    film: Path | None = None
+    table: Path | None = None
+    if options.out:
+        from sandbox import environment
+
+        film = arguments.output_file("--out", options.out, FILM_SUFFIXES)
+        arguments.check_fps(fps, film.suffix.lower())
+        environment.require_pygame_ce()
+    if options.data:
+        table = arguments.output_file("--data", options.data, [".csv"])
+    arguments.check_different({"--out": film, "--data": table})
+    if not (film or table):
+        return None
+    return Output(film, table, size, fps, options.view, options.theme, every)
+
+
+def _session(options: argparse.Namespace) -> Session:
+    """The session that the options describe, checked but not built."""
+    from sandbox.session.session import Session
+
+    if options.scene.lower().endswith(".toml"):
+        for name, value in (("packing", options.packing), ("seed", options.seed)):
+            if value is not None:
+                raise InputError(f"--{name}: a scene file brings its own; leave this out")
+        if options.set:
+            raise InputError("--set: a scene file brings its own settings; write them there")
+        from sandbox.files.scene_file import read_scene
+
+        return Session.from_file(read_scene(options.scene))
+    settings = arguments.assignments(options.set)
+    return Session(options.scene, _packing(options), _seed(options), settings)
+
+
+def _sessions(options: argparse.Namespace) -> list[Session]:
+    """One session, or one for each packing to be compared."""
+    if options.compare is None:
+        return [_session(options)]
+    if options.packing is not None:
+        raise InputError("--packing and --compare: give one of them")
+    from sandbox.session.session import Session
+
+    options.packing = None if options.scene.lower().endswith(".toml") else options.compare[0]
+    first = _session(options)
+    kinds = [first.scene.check_packing(kind) for kind in options.compare]
+    if first.file is not None:
+        return [Session.from_file(first.file.of_kind(kind)) for kind in kinds]
+    name, seed, settings = first.scene.name, first.seed, first.settings
+    return [Session(name, kind, seed, settings) for kind in kinds]
+
+
+def _packing(options: argparse.Namespace) -> str:
+    return "mixed" if options.packing is None else str(options.packing)
+
+
+def _seed(options: argparse.Namespace) -> int:
+    return 1 if options.seed is None else int(options.seed)
+
+
+def _check_packing_of_some_scene(name: str) -> None:
+    from scenes import registry
+
+    known = {
+        packing: None for scene in registry.names() for packing in registry.get(scene).packings
+    }
+    if name not in known:
+        raise InputError(f"unknown packing {name!r}: choose {', '.join(known)}")
+
+
+def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None) -> bool:
+    """What a finished run came to, a line for each packing, and the scene's own checks; False where one of them fails."""
+    if outcome.interrupted:
+        print(_interrupted(outcome, output), file=sys.stderr)
+        if not outcome.increments:
+            return True
+    all_hold = True
+    for session in sessions:
+        print(f"{session.packing}: " * (len(sessions) > 1) + _summary(session, outcome))
+        if session.run.locked:
+            print(f"  {session.run.how_locked}")
+        for check in session.checks():
+            verdict = {True: "holds", False: "FAILS", None: "open"}[check.holds]
+            print(f"  {verdict:<5}  {check.name}: {check.measured}")
+            all_hold &= check.holds is not False
+    return all_hold
+
+
+def _interrupted(outcome: Outcome, output: Output | None) -> str:
+    written = []
+    if outcome.increments and output and output.film:
+        written.append(f"{outcome.frames} frames to {output.film}")
+    if outcome.increments and output and output.table:
+        written.append(f"{outcome.rows} rows to {output.table}")
+    what = f"wrote {' and '.join(written)}" if written else "nothing was written"
+    return f"stopped after {outcome.increments} increments: {what}"
+
+
+def _summary(session: Session, outcome: Outcome) -> str:
+    # Row 0 is the state before the hand has moved.
+    reasons = session.history.column("stop_reason")[1:]
+    forces = session.history.column("resisting")[1:]
+    unfinished = sum(str(reason) != "converged" for reason in reasons)
+    mean = float(forces.mean()) if len(forces) else 0.0
+    return (
+        f"{outcome.frames} frames, {len(reasons)} increments "
+        f"({unfinished or 'none'} did not converge), "
+        f"mean {session.frame().curve_label}: {mean:.4g}, state {session.state_hash()}"
+    )

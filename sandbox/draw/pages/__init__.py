@@ -1,0 +1,1 @@
+"""Pages that cover the window: menu, help, splash, cards."""

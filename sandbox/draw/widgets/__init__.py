@@ -1,0 +1,1 @@
+"""Controls of the panel, as they look."""

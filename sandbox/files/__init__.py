@@ -1,0 +1,1 @@
+"""All that touches the disk: scene files, logs, autosaves, tables."""

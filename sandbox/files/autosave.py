@@ -1,0 +1,214 @@
+"""What a crash leaves: while a person works, a scene file is written now and then, and taken away again at a clean end.
+
+The state after each increment is handed over, which costs nothing, as that state is kept for going back anyway; a thread of
+its own writes the newest. Each running program has files of its own, named by its number, and holds a lock that
+the system lets go of however the program ends: files without a lock are of a program that is gone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import re
+import secrets
+import sys
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO
+
+from platformdirs import user_data_path
+
+from core.errors import InputError
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.beginning import Made, SceneFile
+
+log = logging.getLogger(__name__)
+
+EVERY = 20.0  # [s]
+PATIENCE = 2.0  # with the writing thread at the end [s]
+_NAME = re.compile(r"autosave-\d{1,10}-[0-9a-f]{8}\.toml")
+
+
+def folder() -> Path:
+    """Where autosaves lie: in the data folder of the person who runs the program."""
+    return user_data_path("auxetic-sandbox", appauthor=False) / "autosave"
+
+
+@dataclass(frozen=True)
+class Leftover:
+    """The autosave of a program that is gone."""
+
+    path: Path
+    saved: float  # when, in seconds since the epoch
+    file: SceneFile
+
+    @property
+    def scene(self) -> str:
+        """Name of the scene."""
+        return self.file.scene
+
+    @property
+    def grains(self) -> int:
+        """How many grains there are."""
+        return len(self.file.grains)
+
+    def remove(self) -> None:
+        """Take it away: it was declined, or somebody went on with it."""
+        _remove(self.path)
+
+
+def find(where: Path | None = None) -> tuple[Leftover, ...]:
+    """What crashed programs have left, the latest first. What nobody can read is taken away."""
+    where = where or folder()
+    found, useless = [], []
+    for path in sorted(where.glob("autosave-*.toml")) if where.is_dir() else ():
+        if not _NAME.fullmatch(path.name):
+            continue
+        with contextlib.suppress(OSError), _Lock(path.with_suffix(".lock")) as lock:
+            if not lock.held:
+                continue
+            try:
+                found.append(Leftover(path, path.stat().st_mtime, read_scene(path)))
+            except InputError as error:
+                log.warning("an autosave could not be read: %s", error)
+                useless.append(path)
+    for path in useless:
+        _remove(path)
+    return tuple(sorted(found, key=lambda one: -one.saved))
+
+
+class Autosave:
+    """The autosave of this program."""
+
+    def __init__(self, where: Path | None = None, every: float = EVERY) -> None:
+        """Raises OSError if nothing can be written there."""
+        where = where or folder()
+        where.mkdir(parents=True, exist_ok=True)
+        # Numbers of processes come again, and in a container soon; the rest of the name does not.
+        self.path = where / f"autosave-{os.getpid()}-{secrets.token_hex(4)}.toml"
+        self._lock = _Lock(self.path.with_suffix(".lock"))
+        if not self._lock.held:
+            raise OSError(f"{self.path}: in use")
+        self._every = every
+        self._newest: Made | None = None
+        self._written: Made | None = None
+        self._count = 0
+        self._instead_of: list[Leftover] = []
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="autosave", daemon=True)
+        self._thread.start()
+
+    def keep(self, made: Made | None) -> None:
+        """What there is to be saved now; takes no time. None, or what nobody has done anything with: as before."""
+        if made is None or not made.worth_keeping:
+            return
+        # Where nothing has happened the state is the same object.
+        if self._newest is None or made.state is not self._newest.state:
+            self._newest = made
+
+    def adopt(self, leftover: Leftover) -> None:
+        """A person goes on with ``leftover``: it is taken away once the own autosave holds it."""
+        self._instead_of.append(leftover)
+
+    def close(self, clean: bool = True) -> None:
+        """The end. A clean one takes the autosave away; any other writes the newest state and leaves it."""
+        self._stop.set()
+        self._thread.join(PATIENCE)
+        if not clean and self._newest is not None:
+            with contextlib.suppress(OSError):
+                self.write()
+            self._lock.release()
+            return
+        for leftover in self._instead_of:
+            leftover.remove()
+        self._lock.release()
+        _remove(self.path)
+
+    def _run(self) -> None:
+        while not self._stop.wait(self._every):
+            try:
+                self.write()
+            except OSError as error:
+                log.warning("autosave: %s", error)
+
+    def write(self) -> bool:
+        """Write what is new, if anything is. True if something was written. Raises OSError as the system does."""
+        newest = self._newest
+        if newest is None or newest is self._written:
+            return False
+        # Two names for the grains in turn: until the text is replaced, it has the grains that it names.
+        self._count += 1
+        name = f"{self.path.stem}.{self._count % 2}.npz"
+        write_scene(self.path, newest, name, lasting=False)
+        self._written = newest
+        while self._instead_of:
+            self._instead_of.pop().remove()
+        return True
+
+
+def begin(where: Path | None = None) -> Autosave | None:
+    """An autosave for this program; None where nothing can be written, which is no reason not to go on."""
+    try:
+        return Autosave(where)
+    except OSError as error:
+        log.warning("no autosave: %s", error)
+        return None
+
+
+def _remove(path: Path) -> None:
+    """Take an autosave away, all its files."""
+    for name in (path.name, f"{path.stem}.0.npz", f"{path.stem}.1.npz", f"{path.stem}.lock"):
+        with contextlib.suppress(OSError):
+            path.with_name(name).unlink(missing_ok=True)
+
+
+class _Lock:
+    """A file that this process alone has locked, if ``held``. The system unlocks it when the process ends, however it does."""
+
+    def __init__(self, path: Path) -> None:
+        self._file: IO[bytes] | None = path.open("ab")
+        if not _locked(self._file):
+            self.release()
+
+    @property
+    def held(self) -> bool:
+        """Is it ours?"""
+        return self._file is not None
+
+    def release(self) -> None:
+        """Let go of it."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None
+
+    def __enter__(self) -> _Lock:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    def _locked(file: IO[bytes]) -> bool:
+        """Lock a file, unless somebody has."""
+        try:
+            file.seek(0)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        except OSError:
+            return False
+        return True
+
+else:
+    import fcntl
+
+    def _locked(file: IO[bytes]) -> bool:
+        """Lock a file, unless somebody has."""
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False
+        return True

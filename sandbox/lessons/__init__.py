@@ -1,0 +1,1 @@
+"""What leads through the scenes: guided tours, as data."""

@@ -1,0 +1,1 @@
+"""Films and tables of sessions, made without a window."""

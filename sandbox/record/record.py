@@ -1,0 +1,178 @@
+"""Runs one packing or several without a window, increment by increment, and writes down what it sees."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from sandbox.bars import bar_options
+from sandbox.files.table import SideBySide, Table, write_csv
+from sandbox.interrupts import deferred
+from sandbox.record.video import VideoWriter
+
+if TYPE_CHECKING:
+    from sandbox.session.frame import Frame
+    from sandbox.session.log import Log
+    from sandbox.session.session import Session
+
+# Relaxation steps between two looks at the clock and at Ctrl-C: a fraction of a second.
+SLICE = 400
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a run is written to; at least one of the two."""
+
+    film: Path | None
+    table: Path | None
+    size: tuple[int, int] = (1280, 720)
+    fps: float = 30.0
+    view: str = "kind"
+    theme: str = "dark"
+    every: int = 1  # increments to a frame of the film
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a run came to. The table has a row more than there are increments: that of the start."""
+
+    increments: int
+    frames: int
+    rows: int  # of all packings
+    interrupted: bool
+
+
+def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
+    """Build all sessions, run their scripted protocols for ``steps`` increments, write the output.
+
+    One frame an increment. Ctrl-C, or the end of the protocol, ends the run early; everything done
+    until then is written.
+    """
+    from sandbox.session.commands import Protocol
+
+    for session in sessions:
+        with build_bar() as progress:
+            session.build(progress)
+        session.submit(Protocol(True))
+    return run(sessions, in_step(sessions), steps, output)
+
+
+def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
+    """Run a log again, one frame an increment; the session at its end, and what it came to."""
+    from sandbox.session.replay import replay
+
+    with build_bar() as progress:
+        states = replay(log, progress)
+        session = next(states)
+    outcome = run([session], (True for _ in states), log.end, output)
+    if not outcome.interrupted:
+        next(states, None)  # commands that came after the last increment
+    return session, outcome
+
+
+def in_step(sessions: Sequence[Session]) -> Iterator[bool]:
+    """Work slice by slice, in all at the same time, until none has anything to do; True where an increment was finished.
+
+    Each packing relaxes every increment to the end before any begins the next; one that is done waits. So the result does
+    not depend on how fast the machine is.
+    """
+    with ThreadPoolExecutor(min(len(sessions), os.cpu_count() or 1)) as pool:
+        works = [session.slices(SLICE) for session in sessions]
+        finished = True
+        while finished:
+            at_work, finished = works, False
+            while at_work:
+                done = list(pool.map(lambda work: next(work, None), at_work))
+                finished |= True in done
+                at_work = [w for w, d in zip(at_work, done, strict=True) if d is False]
+                if at_work or finished:
+                    yield not at_work
+
+
+def run(
+    sessions: Sequence[Session], work: Iterator[bool], steps: int, output: Output | None
+) -> Outcome:
+    """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
+
+    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th,
+    the table at the end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    """
+    from tqdm import tqdm
+
+    film, table = (output.film, output.table) if output else (None, None)
+    draw = _drawer(output) if output and film else None
+    writer = VideoWriter(film, output.size, output.fps) if output and film else None
+    increments = 0
+    interrupted = False
+    try:
+        with (
+            writer or nullcontext(),
+            tqdm(
+                total=steps, desc=sessions[0].scene.name, unit="increment", **bar_options()
+            ) as bar,
+        ):
+            while increments < steps:
+                with deferred():
+                    finished = next(work, None)
+                    if finished is None:
+                        break
+                    if finished:
+                        increments += 1
+                        if writer and draw and output and increments % output.every == 0:
+                            writer.write(draw([session.frame() for session in sessions]))
+                        bar.update()
+    except KeyboardInterrupt:
+        interrupted = True
+    if table and increments:
+        write_csv(table, _table(sessions))
+    rows = sum(len(session.history) for session in sessions)
+    return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
+
+
+def _table(sessions: Sequence[Session]) -> Table:
+    if len(sessions) == 1:
+        return sessions[0].history
+    return SideBySide([(session.packing, session.history) for session in sessions])
+
+
+@contextmanager
+def build_bar() -> Iterator[Callable[[str, float], None]]:
+    """A progress bar to pass to ``Session.build``."""
+    from tqdm import tqdm
+
+    with tqdm(
+        total=1.0, bar_format="{desc:<42.42} {percentage:3.0f}%|{bar}| {elapsed}", **bar_options()
+    ) as bar:
+
+        def progress(text: str, fraction: float) -> None:
+            bar.set_description_str(text, refresh=False)
+            bar.update(max(0.0, min(fraction, 1.0) - bar.n))
+
+        yield progress
+        bar.update(max(0.0, 1.0 - bar.n))
+
+
+def _drawer(output: Output) -> Callable[[Sequence[Frame]], Any]:
+    """What makes a picture of one frame or several: the next of the film."""
+    from sandbox.environment import prepare_headless
+
+    prepare_headless()
+    from sandbox.draw.flashes import Flashes
+    from sandbox.draw.render import Renderer
+
+    # Letters and lines keep their share of the picture whatever its size.
+    scale = max(0.5, min(output.size[0] / 1280, output.size[1] / 720))
+    renderer = Renderer(output.size, scale, output.theme, output.view)
+    flashes, numbers = Flashes(), count()
+
+    def draw(frames: Sequence[Frame]) -> Any:
+        lit = flashes.follow(frames, next(numbers) / output.fps)  # the film's time, not the clock's
+        return renderer.image(frames, flashes=lit)
+
+    return draw

@@ -1,0 +1,407 @@
+"""A built scene under way: hands pull, increments follow one another, each leaves a row of history."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from core.errors import InputError
+from core.friction import Friction
+from core.hand import CELL
+from core.quasistatic import Increment, Quasistatic
+from core.relaxation import FAILED, StopReason
+from sandbox.session.checkpoints import Checkpoint, Checkpoints, bare
+from sandbox.session.commands import Edit
+from sandbox.session.course import Course
+from sandbox.session.editing import edited
+from sandbox.session.frame import Frame
+from sandbox.session.hands import Hands
+from sandbox.session.history import Event, History
+from sandbox.session.reading import (
+    LOCKED_AFTER,
+    follow_drive,
+    locked,
+    read_off,
+    tell_what_stopped,
+)
+from sandbox.session.take_frame import Shown, take
+from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.text import message
+
+TOO_TIGHT = "that was too tight for the grains: it is taken back"
+MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
+AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
+
+
+class Run:
+    """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
+
+    def __init__(
+        self, scene: Scene, values: Values, packing_kind: str, seed: int, setup: Setup
+    ) -> None:
+        drive = setup.handles[0]
+        self.scene, self.values, self.setup = scene, values, setup
+        self._course = Course(drive.direction, len(setup.packing))
+        self.packing_kind, self.seed = packing_kind, seed
+        friction = None
+        if setup.friction > 0.0:
+            kept = setup.friction_state
+            friction = Friction(0.5, len(setup.packing)) if kept is None else kept.copy()
+            friction.coefficient = setup.friction
+        self.engine = Quasistatic(
+            setup.packing,
+            setup.world,
+            setup.solver,
+            friction,
+            setup.gravity,
+            follow=setup.follow,
+            drag=setup.drag,
+            relaxes=setup.relaxes,
+        )
+        self.history = History()
+        self.checkpoints = Checkpoints()
+        self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
+        self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
+        self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
+        self.engine.begin({})
+        last: Increment | None = None
+        while last is None:
+            last = self.engine.relax(1_000)
+        self._last = last
+        self._course.moving = setup.drag > 0.0
+        self._record(last)
+        self._remark(None, None, 0)
+        self._keep()
+
+    # Changes.
+
+    @property
+    def hands(self) -> Hands:
+        """What holds its bodies and says where they go."""
+        return Hands(self.scene, self.values, self.setup, self._course)
+
+    def say(self, notice: str) -> None:
+        """Plain words for the person at the window, until something else is to be said."""
+        self._course.notices = [notice]
+
+    def adjust(self, values: Values, changed: frozenset[str]) -> None:
+        """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
+
+        Raises InputError for a step that is too long, and changes nothing then.
+        """
+        setup, before = self.setup, self.present()
+        try:
+            self.scene.adjust(setup, values, changed)
+            self.engine.adjust(setup.solver, setup.friction, setup.gravity, setup.drag)
+        except InputError:
+            self.restore(before)
+            raise
+        self._course.blocked.clear()
+        self._course.stuck = 0
+        if self._course.script is not None:
+            place = self.scene.place_in_drive(self._course.script, self.values, values)
+            self._course.script = place
+        self.values = values
+        self.touched()
+
+    def edit(self, command: Edit) -> None:
+        """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
+        made = edited(self.setup, self.values, command, self._course.next_label)
+        before = self._before_edit or (self.present(), self._course.copy())
+        course, friction = self._course, self.engine.friction
+        if friction is not None:
+            friction.rearrange(made.source)
+            friction.forget_primitives(*made.forgotten)
+        course.initial += len(made.packing) - len(self.setup.packing)
+        course.next_label = max(course.next_label, int(made.packing.label.max(initial=-1)) + 1)
+        course.edited, course.moving = True, self.setup.drag > 0.0
+        course.remarks = Remarks()
+        course.notices.clear()
+        self.setup.packing = made.packing
+        self.setup.world.redraw(made.walls)
+        self.engine.take_over(made.packing)
+        pairs, bodies = self.engine.contacts()
+        self._last = replace(
+            self._last,
+            grain_contacts=pairs,
+            body_contacts=bodies,
+            reactions=self.engine.reactions,
+            unbalanced=np.zeros(len(made.packing)),
+        )
+        self.touched()
+        self._before_edit = before
+
+    def touched(self) -> None:
+        """Something was changed between two increments: one relaxes where things stand, or a few until it is relaxed."""
+        self._course.touched = MOST_RELAXATIONS
+        self._kept = None
+
+    # Increments.
+
+    @property
+    def idle(self) -> bool:
+        """True if no body has to move and nothing is being relaxed."""
+        return self._still and not self.engine.busy and not self.hands.wanted()
+
+    def advance(self, max_iterations: int) -> bool:
+        """At most so many force evaluations. True if they finished an increment."""
+        if not self.engine.busy:
+            targets = {} if self._course.touched else self.hands.next_targets()
+            if not targets and self._still:
+                return False
+            box = targets.pop(CELL, None)
+            try:
+                self.engine.begin(targets, None if box is None else self.hands.cell(box))
+            except InputError as error:
+                self._give_up(error)
+                return False
+        increment = self.engine.relax(max_iterations)
+        if increment is None:
+            return False
+        if self._before_edit is not None and self._too_tight(increment):
+            return True
+        # What a change has done is nothing that the grains did.
+        before = None if self._course.touched else self._last
+        unfinished = increment.report.reason is StopReason.ITERATION_LIMIT
+        self._course.touched = max(self._course.touched - 1, 0) if unfinished else 0
+        self._last = increment
+        earlier = None if before is None else Earlier(before, self.setup.packing.label)
+        tell_what_stopped(self._course, self.setup, increment)
+        left = self._remove_those_gone()
+        follow_drive(self._course, self.setup, increment)
+        self._record(increment)
+        if left:
+            row, course = self.history[-1], self._course
+            course.waited = row.stroke - course.last_exit[0]
+            course.last_exit = row.stroke, row.resisting
+        self._course.moving = self._goes_on(left)
+        self._remark(None if left else before, earlier, left)
+        self._keep()
+        return True
+
+    def _give_up(self, error: InputError) -> None:
+        """An increment that cannot be begun: say why, and wait for the hand to ask for something else."""
+        course = self._course
+        course.blocked.update(course.targets)
+        course.script, course.moving, course.touched = None, False, 0
+        self.say(message(error))
+
+    def _too_tight(self, increment: Increment) -> bool:
+        """After an edit: if the grains cannot be relaxed, back to before it. True then."""
+        before, self._before_edit = self._before_edit, None
+        if increment.report.reason not in FAILED:
+            return False
+        assert before is not None
+        self.restore(before[0])
+        self._course = before[1]
+        self.say(TOO_TIGHT)
+        return True
+
+    def _record(self, increment: Increment) -> None:
+        known = self.scene.accuracy
+        row = read_off(self._course, self.setup, increment, len(self.history), known)
+        self.history.append(row)
+
+    @property
+    def _still(self) -> bool:
+        """True if neither the script, nor the grains by themselves, nor a change want another increment."""
+        course = self._course
+        return course.script is None and not course.moving and not course.touched
+
+    def _goes_on(self, left: int) -> bool:
+        """With drag: whether the grains are still on their way."""
+        gravity, drag = self.setup.gravity, self.setup.drag
+        if gravity is None or drag == 0.0 or self.failed:
+            return False
+        return left > 0 or self.engine.farthest_move() > AT_REST * math.hypot(*gravity) / drag
+
+    def _remark(self, before: Increment | None, earlier: Earlier | None, left: int) -> None:
+        """Take down what the scene has to say about the newest increment, and what has begun in it."""
+        course = self._course
+        at_rest = self.setup.drag > 0.0 and not course.moving
+        curve = self.history.curve
+        latest = Latest(
+            before,
+            self._last,
+            curve,
+            left,
+            course.last_exit,
+            at_rest,
+            earlier,
+            course.waited,
+            course.initial,
+        )
+        remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
+        if self.locked:
+            remarks = locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
+        course.remarks = remarks
+        row = self.history[-1]
+        for kind, text in remarks.happening.items():
+            # A clog or an arch remains the same one until a grain has left.
+            same = kind in ("clog", "arch") and course.announced.get(kind) == course.out
+            if kind not in going_on.happening and not same:
+                course.announced[kind] = course.out
+                self.history.announce(Event(kind, row.increment, row.stroke, row.resisting, text))
+
+    def _remove_those_gone(self) -> int:
+        """How many grains have left by the outlet in this increment."""
+        if self.setup.outlet is None:
+            return 0
+        gone = self.setup.outlet.gone(self.engine.packing)
+        if gone.any():
+            self._course.out += int(gone.sum())
+            self.engine.remove(gone)
+            self.setup.packing = self.engine.packing
+            pairs, bodies = self.engine.contacts()
+            unbalanced = self._last.unbalanced[~gone]
+            self._last = replace(
+                self._last, grain_contacts=pairs, body_contacts=bodies, unbalanced=unbalanced
+            )
+        return int(gone.sum())
+
+    # States to go back to.
+
+    @property
+    def kept(self) -> Checkpoint | None:
+        """The checkpoint of the state as it is: None if something was changed since, or is going to be by the script."""
+        return None if self._course.script is not None else self._kept
+
+    def present(self) -> Checkpoint:
+        """A checkpoint of the state as it is: the same object as long as nothing has changed."""
+        if self.kept is None:
+            self._kept = self._checkpoint(self.checkpoints.at(self.checkpoints.last))
+        assert self._kept is not None
+        return self._kept
+
+    @property
+    def settled(self) -> Checkpoint:
+        """The state between increments: as it is, or as it was before the one under way."""
+        if self._kept is not None:
+            return self._kept
+        if self.engine.busy:
+            return self.checkpoints.at(len(self.history) - 1)
+        return self.present()
+
+    def _keep(self) -> None:
+        """Keep the state after an increment."""
+        before = self.checkpoints.at(self.checkpoints.last) if len(self.checkpoints) else None
+        self._kept = self._checkpoint(before)
+        self.checkpoints.add(self._kept)
+
+    def _checkpoint(self, before: Checkpoint | None) -> Checkpoint:
+        return Checkpoint(
+            engine=self.engine.save(None if before is None else before.engine),
+            course=self._course.copy(),
+            last=bare(self._last),
+            history=self.history,
+            length=len(self.history),
+            values=self.values,
+        )
+
+    def restore(self, kept: Checkpoint) -> None:
+        """Be as at that checkpoint; what is kept of the past and the future of that state stays."""
+        setup, engine = self.setup, self.engine
+        engine.restore(kept.engine)
+        setup.packing, setup.solver = engine.packing, engine.settings
+        setup.gravity, setup.drag = engine.gravity, engine.drag
+        setup.friction = 0.0 if engine.friction is None else engine.friction.coefficient
+        self._course, self.values = kept.course.copy(), kept.values
+        self.history = kept.history.upto(kept.length)
+        pairs, bodies = engine.contacts()
+        self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
+        self.checkpoints.travel(kept)
+        self._kept, self._before_edit = kept, None
+
+    def recall(self, increment: int) -> None:
+        """Go to the state after that increment, or the nearest kept before it."""
+        self.restore(self.checkpoints.at(increment))
+
+    # What can be seen.
+
+    def frame(self, can_undo: bool = False, can_redo: bool = False) -> Frame:
+        """A snapshot that shares nothing with the run."""
+        return take(
+            Shown(
+                scene=self.scene,
+                settings=self.values,
+                packing_kind=self.packing_kind,
+                seed=self.seed,
+                setup=self.setup,
+                engine=self.engine,
+                last=self._last,
+                history=self.history,
+                drive=self.setup.handles[0],
+                course=self._course,
+                kept=(self.checkpoints.first, self.checkpoints.last),
+                future=self.checkpoints.future(len(self.history)),
+                can_undo=can_undo,
+                can_redo=can_redo,
+            )
+        )
+
+    def state_hash(self) -> str:
+        """Hash of every bit of the packing, of where the bodies are, and of what frictional contacts remember."""
+        placement = self.setup.world.placement().tobytes()
+        digest = hashlib.sha256(self.setup.packing.hash().encode() + placement)
+        if self.engine.friction is not None:
+            digest.update(self.engine.friction.hash().encode())
+        for wall in self.setup.world.drawn:
+            digest.update(wall.primitives().tobytes())
+        return digest.hexdigest()
+
+    @property
+    def locked(self) -> bool:
+        """True if all the strength of the hand moves nothing."""
+        return self._course.stuck >= LOCKED_AFTER
+
+    @property
+    def how_locked(self) -> str:
+        """Where a locked hand ended, in one line."""
+        course, way = self._course, self.way
+        words = f"locked at {self.strength:g} k R"
+        if way is not None:
+            words += f" after {way:.1f} R of stroke"
+        if self.setup.outlet is not None:
+            words += f": {course.out} of {course.initial} out"
+        return words
+
+    @property
+    def way(self) -> float | None:
+        """How far the body in the hand has come from where it first stood [R]; None for a periodic cell."""
+        name = self.setup.handles[0].body
+        if name == CELL:
+            return None
+        body = self.setup.world[name]
+        return math.dist(body.position, body.home)
+
+    @property
+    def hand_force(self) -> float:
+        """Of the latest increment, along its pull [k R]; nan where it pulled at nothing."""
+        return self._last.hand_force
+
+    @property
+    def strength(self) -> float:
+        """Of the hand [k R]."""
+        return self.setup.solver.hand_strength
+
+    @property
+    def failed(self) -> bool:
+        """True if the newest increment led to nothing that can be shown."""
+        return self._last.report.reason in FAILED
+
+    def checks(self) -> list[Check]:
+        """The scene's claims about this run; about what a person has made, only those that hold for any scene."""
+        rows = self.history
+        track = Track(
+            stroke=rows.column("stroke"),
+            force=rows.column("resisting"),
+            grains_out=rows.column("grains_out"),
+            residual=rows.column("residual"),
+            converged=rows.column("stop_reason") == str(StopReason.CONVERGED),
+            initial_grains=self._course.initial,
+        )
+        claims = self.scene.general_checks if self._course.edited else self.scene.checks
+        return claims(self.setup, track)

@@ -1,0 +1,201 @@
+"""From a running session to a frame: an immutable copy of what can be seen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.observables import grain_stress
+from core.packing import Packing, PeriodicBox
+from core.quasistatic import Increment, Quasistatic
+from core.rigid import Point, RigidBody
+from core.rigid_contacts import DISC
+from sandbox.session.course import Course
+from sandbox.session.frame import Ahead, BodyShape, Contacts, Frame, HandleState
+from sandbox.session.history import History
+from scenes.scene import Handle, Scene, Setup, Values
+from scenes.text import Text
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The parts of a session that a frame shows."""
+
+    scene: Scene
+    settings: Values
+    packing_kind: str
+    seed: int
+    setup: Setup
+    engine: Quasistatic
+    last: Increment
+    history: History
+    drive: Handle
+    course: Course
+    kept: tuple[int, int]  # first and last increment that can be recalled
+    future: History | None  # after a recall: the whole course of events that is kept
+    can_undo: bool
+    can_redo: bool
+
+
+def take(view: Shown) -> Frame:
+    """A snapshot of ``view`` that shares nothing with it."""
+    packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
+    under_way = view.engine.progress()
+    last = view.last.report
+    highlight = view.course.remarks.highlight
+    state = packing.state.copy()
+    state[:2] = packing.folded()
+    primitives, _ = view.setup.world.primitives()
+    stress = grain_stress(packing, view.last.grain_contacts, view.last.body_contacts, primitives)
+    return Frame(
+        scene=view.scene.name,
+        title=view.scene.title,
+        packing=view.packing_kind,
+        seed=view.seed,
+        increment=len(view.history) - 1,
+        x=state[0],
+        y=state[1],
+        p=state[2],
+        q1=state[3],
+        q2=state[4],
+        rest_radius=packing.rest_radius.copy(),
+        poisson_ratio=packing.poisson_ratio.copy(),
+        label=packing.label.copy(),
+        pressure=stress[0],
+        stress_difference=2.0 * np.hypot(stress[1], stress[2]),
+        motion=view.engine.own_motion(),
+        contacts=_contact_lines(view, packing, primitives, state[0], state[1]),
+        bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
+        handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
+        bounds=view.setup.bounds,
+        stroke=view.course.stroke,
+        grains_out=view.course.out,
+        energy=last.energy,
+        residual=last.residual,
+        tolerance=view.setup.solver.tolerance,
+        iterations=(last if under_way is None else under_way).iterations,
+        stop_reason=str(last.reason),
+        busy=under_way is not None,
+        protocol=view.course.script is not None,
+        notices=(*view.course.notices, *view.course.remarks.notices),
+        curve_stroke=view.history.curve[0],
+        curve_force=view.history.curve[1],
+        spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
+        curve_label=Text("force on the {label} [k R]", label=view.drive.label)
+        if curve is None
+        else curve.force_label,
+        stroke_label="stroke [R]" if curve is None else curve.stroke_label,
+        hand_limit=view.setup.solver.hand_strength if curve is None else math.inf,
+        box=None if box is None else (box.width, box.height, box.shift),
+        highlight=None if highlight is None else highlight.copy(),
+        residual_force=view.last.unbalanced.copy(),
+        force_error=_force_error(view.history),
+        settings=dict(view.settings),
+        first_kept=view.kept[0],
+        last_kept=view.kept[1],
+        can_undo=view.can_undo,
+        can_redo=view.can_redo,
+        events=view.history.events,
+        ahead=_ahead(view),
+    )
+
+
+def _force_error(history: History) -> float:
+    """The newest estimate over the mean magnitude of the force so far; nan where there was none."""
+    scale = history.mean_magnitude
+    return history[-1].force_error / scale if scale > 0.0 else math.nan
+
+
+def _ahead(view: Shown) -> Ahead | None:
+    """What is kept of later increments."""
+    if view.future is None:
+        return None
+    shown, last = len(view.history), view.kept[1]
+    stroke, force = view.future.curve[:, shown : last + 1]
+    later = tuple(e for e in view.future.events if shown <= e.increment <= last)
+    return Ahead(stroke, force, later)
+
+
+def _contact_lines(
+    view: Shown,
+    packing: Packing,
+    primitives: NDArray[np.float64],
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+) -> Contacts:
+    """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
+    pairs, bodies = view.last.grain_contacts, view.last.body_contacts
+    grain_x, grain_y = x[bodies.grain], y[bodies.grain]
+    body_x = bodies.x + grain_x - packing.x[bodies.grain]
+    body_y = bodies.y + grain_y - packing.y[bodies.grain]
+    # On a disc the force acts at its centre; the line ends where grain and disc touch.
+    disc = primitives[bodies.primitive, 0] == DISC
+    length = np.hypot(grain_x - body_x, grain_y - body_y)
+    share = np.where(disc, primitives[bodies.primitive, 7] / np.maximum(length, 1e-12), 0.0)
+    return Contacts(
+        x0=np.concatenate([x[pairs.i], grain_x]),
+        y0=np.concatenate([y[pairs.i], grain_y]),
+        x1=np.concatenate([x[pairs.i] + pairs.dx, body_x + share * (grain_x - body_x)]),
+        y1=np.concatenate([y[pairs.i] + pairs.dy, body_y + share * (grain_y - body_y)]),
+        force=np.concatenate([pairs.normal_force, bodies.normal_force]),
+        rigid=np.repeat([False, True], [len(pairs.i), len(bodies.grain)]),
+        i=np.concatenate([pairs.i, bodies.grain]),
+        j=np.concatenate([pairs.j, np.full(len(bodies.grain), -1)]),
+    )
+
+
+def _handle_state(view: Shown, handle: Handle) -> HandleState:
+    box = view.setup.packing.box
+    target = view.course.targets.get(handle.body)
+    if handle.body == "box" and box is not None:
+        at = view.setup.box_handle
+        place = (box.width, box.height) if at is None else at(box)
+        x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
+        return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
+    body = view.setup.world[handle.body]
+    push = view.last.reactions[view.setup.world.index(handle.body), :2]
+    # The hand's force along its pull, as it is plotted; what goes across is borne by the guide.
+    along = view.course.direction if body.axis is None else body.axis
+    fx, fy = -float(np.dot(push, along)) * np.array(along)
+    x, target = _nearest_image(body.position[0], target, box)
+    return HandleState(
+        name=handle.body,
+        label=handle.label,
+        x=x,
+        y=body.position[1],
+        target=target,
+        fx=float(fx),
+        fy=float(fy),
+        radius=handle.radius,
+        axis=body.axis,
+    )
+
+
+def _nearest_image(
+    x: float, target: Point | None, box: PeriodicBox | None
+) -> tuple[float, Point | None]:
+    """What has gone round a periodic cell is shown where its image is, and so is the place where it is wanted."""
+    if box is None or not np.isfinite(box.width):
+        return x, target
+    shown = x % box.width
+    return shown, None if target is None else (target[0] + shown - x, target[1])
+
+
+def _shape(body: RigidBody, box: PeriodicBox | None) -> BodyShape:
+    """A body's shapes in the world, for drawing; discs folded into the periodic cell."""
+    discs = np.array([(*body.to_world([(x, y)])[0], radius) for x, y, radius in body.discs])
+    discs = discs.reshape(-1, 3)
+    if box is not None and np.isfinite(box.width):
+        discs[:, 0] %= box.width
+    rows = np.array(body.segments, dtype=np.float64).reshape(-1, 5)
+    ends = body.to_world(rows[:, :4].reshape(-1, 2)).reshape(-1, 4)
+    return BodyShape(
+        name=body.name,
+        role=body.role,
+        discs=discs,
+        segments=np.column_stack([ends, rows[:, 4:]]),
+        polygons=tuple(body.to_world(corners) for corners, _ in body.polygons),
+    )

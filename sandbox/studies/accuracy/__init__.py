@@ -1,0 +1,1 @@
+"""Study: error against run time."""

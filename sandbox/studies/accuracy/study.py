@@ -1,0 +1,187 @@
+"""The study of accuracy: error against run time, scene by scene. Which jobs there are, carry them out, write what they found."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.files import atomic_write
+from sandbox.interrupts import deferred
+from sandbox.studies.accuracy import job as accuracy_job
+from sandbox.studies.accuracy.job import Job
+from sandbox.studies.accuracy.protocols import APART, PROTOCOLS, protocol
+from sandbox.studies.accuracy.report import as_markdown, as_table, statement
+from sandbox.studies.accuracy.summary import summarise
+from sandbox.studies.common.folder import finite, machine, write_text
+from sandbox.studies.common.pool import Pool, stopping
+from scenes import registry
+
+FORMAT = "auxetic-sandbox accuracy"
+VERSION = 1
+DIGITS = 6  # of a number in results.json
+# One thread a process: peers and polishes call libraries that would take all cores, and wait for one another.
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+Measure = Callable[[Job], dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a study came to: a statement and, where a job failed, its reason, by scene."""
+
+    statements: Mapping[str, str]
+    failures: Mapping[str, str]
+    jobs: int
+    interrupted: bool
+
+
+def choose(names: Sequence[str] | None) -> list[str]:
+    """The scenes of those names in the order of the menu, or all that have a protocol. Raises InputError for an unknown one."""
+    wanted = {registry.get(name).name for name in names or ()}
+    return [name for name in registry.names() if (name in wanted if names else name in PROTOCOLS)]
+
+
+def study(
+    folder: Path,
+    *,
+    scenes: Sequence[str] | None = None,
+    quick: bool = False,
+    jobs: int = 2,
+    measure: Measure | None = None,
+) -> Outcome:
+    """Measure. Jobs that were finished in ``folder`` before are not carried out again; Ctrl-C leaves what is finished."""
+    began = time.perf_counter()
+    chosen = choose(scenes)
+    plan = [Job(n, seed + 1, quick) for n in chosen for seed in range(protocol(n, quick).starts)]
+    found: dict[Job, dict[str, Any]] = {}
+    failures: dict[str, str] = {}
+    for job in plan:
+        kept = _read(folder, job)
+        if kept is not None:
+            found[job] = kept
+    before = len(found)
+    try:
+        _run([job for job in plan if job not in found], folder, jobs, found, failures, measure)
+    except KeyboardInterrupt:
+        return Outcome({}, failures, len(found), interrupted=True)
+    summaries = {
+        name: summarise([found[job] for job in plan if job.scene == name])
+        for name in chosen
+        if name not in failures
+    }
+    about = {
+        "quick": quick,
+        "jobs": jobs,
+        "finished_before": before,
+        "seconds": round(time.perf_counter() - began, 1),
+        **machine(),
+    }
+    _write(folder, summaries, about)
+    statements = {name: statement(summary) for name, summary in summaries.items()}
+    return Outcome(statements, failures, len(found), interrupted=False)
+
+
+def execute(job: Job) -> dict[str, Any]:
+    """Carry a job out in a process of a pool."""
+    return accuracy_job.measure(job, stopping)
+
+
+def _run(
+    missing: Sequence[Job],
+    folder: Path,
+    jobs: int,
+    found: dict[Job, dict[str, Any]],
+    failures: dict[str, str],
+    measure: Measure | None,
+) -> None:
+    from tqdm import tqdm
+
+    waiting = list(reversed(missing))
+    if not waiting:
+        return
+    bar = tqdm(total=len(missing), unit="job", desc="accuracy", file=sys.stderr, mininterval=1.0)
+    with bar, _one_thread(), Pool(jobs) as pool:
+        under_way: dict[Future[dict[str, Any]], Job] = {}
+        while waiting or under_way:
+            while waiting and len(under_way) < jobs:
+                job = waiting.pop()
+                under_way[pool.call(measure or execute, job)] = job
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                job = under_way.pop(future)
+                error = future.exception()
+                if error is None:
+                    found[job] = json.loads(json.dumps(future.result()))
+                    _keep(folder, job, found[job])
+                else:
+                    failures[job.scene] = f"{type(error).__name__}: {error}"
+                    bar.write(f"failed: {job.scene}, seed {job.seed}: {error}", file=sys.stderr)
+                bar.update()
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Processes that begin within the block compute with one thread each."""
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _read(folder: Path, job: Job) -> dict[str, Any] | None:
+    """A finished job; None for one that is not, or a damaged file."""
+    try:
+        data = json.loads((folder / "runs" / f"{job.key()}.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return data if isinstance(data, dict) else None
+
+
+def _keep(folder: Path, job: Job, data: Mapping[str, Any]) -> None:
+    with deferred(), atomic_write(folder / "runs" / f"{job.key()}.json") as file:
+        file.write(json.dumps(data).encode())
+
+
+def _write(folder: Path, summaries: Mapping[str, Any], about: Mapping[str, Any]) -> None:
+    """Pictures, numbers, tables. Raises InputError if one cannot be written."""
+    from sandbox.studies.accuracy.figures import draw_scene, draw_stiffness
+
+    for name, summary in summaries.items():
+        draw_scene(name, registry.get(name).title, summary, folder / f"{name}.png")
+    draw_stiffness(summaries, folder / "stiffness.png")
+    data = {
+        "format": FORMAT,
+        "version": VERSION,
+        **about,
+        "apart": APART,
+        "statements": {name: statement(summary) for name, summary in summaries.items()},
+        "scenes": _rounded(summaries),
+    }
+    text = json.dumps(finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    write_text(folder / "results.json", text)
+    write_text(folder / "accuracy.md", as_markdown(summaries, about, APART))
+    write_text(folder / "accuracy.toml", as_table(summaries))
+
+
+def _rounded(value: Any) -> Any:
+    """Numbers with as many digits as anybody needs."""
+    if isinstance(value, float):
+        return float(f"{value:.{DIGITS}g}")
+    if isinstance(value, Mapping):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_rounded(item) for item in value]
+    return value

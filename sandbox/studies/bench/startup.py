@@ -1,0 +1,128 @@
+"""From the start of a process to the first picture, in fresh processes: kernels compiled before, and not."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+from sandbox.studies.bench.report import Row, Section, at_most
+
+HELP, FIRST_FRAME = 0.3, 3.0  # [s]
+SCENES = ("hopper", "intruder")
+REPOSITORY = Path(__file__).parents[3]
+PATIENCE = 600.0
+
+# Run in a process of its own: packs a scene as the window does, and draws it.
+CHILD = """
+import json, sys, time
+began = time.perf_counter()
+from sandbox.environment import prepare_headless
+prepare_headless()
+from sandbox.session.session import Session
+from sandbox.draw import warmup
+from sandbox.draw.render import Renderer
+marks = {"imported": time.perf_counter() - began}
+warmup.compile_kernels()
+marks["drawing kernels"] = time.perf_counter() - began
+session = Session(sys.argv[1])
+def progress(text, share):
+    if text.startswith("packing"):
+        marks.setdefault("solver kernels", time.perf_counter() - began)
+session.build(progress)
+marks["built"] = time.perf_counter() - began
+Renderer((1280, 720)).draw(session.frame())
+marks["first frame"] = time.perf_counter() - began
+print(json.dumps(marks), flush=True)
+"""
+
+
+def _environment(cache: str | None) -> dict[str, str]:
+    paths = [str(REPOSITORY), os.environ.get("PYTHONPATH", "")]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
+    if cache is not None:
+        environment["NUMBA_CACHE_DIR"] = cache
+    return environment
+
+
+def help_time(repeats: int) -> float:
+    """Wall time of ``--help``, the fastest of a few [s]."""
+    best = float("inf")
+    for _ in range(repeats):
+        start = time.perf_counter()
+        subprocess.run(
+            [sys.executable, "-m", "sandbox", "--help"],
+            env=_environment(None),
+            stdout=subprocess.DEVNULL,
+            check=True,
+            timeout=PATIENCE,
+        )
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def first_frame(scene: str, cache: str | None = None) -> dict[str, Any]:
+    """Wall time from the start of a process to its first frame [s], and what it had done by when.
+
+    ``cache`` is a folder for compiled kernels in place of the usual one.
+    """
+    start = time.perf_counter()
+    with subprocess.Popen(
+        [sys.executable, "-c", CHILD, scene],
+        env=_environment(cache),
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as child:
+        assert child.stdout is not None
+        patience = threading.Timer(PATIENCE, child.kill)
+        patience.start()
+        line = child.stdout.readline()
+        seconds = time.perf_counter() - start
+        rest = child.stdout.read()
+        patience.cancel()
+    if child.returncode != 0:
+        raise subprocess.CalledProcessError(child.returncode, child.args, line + rest)
+    # The child's own clock begins after its interpreter has started: that part is in the seconds only.
+    return {"seconds": seconds, "marks": json.loads(line)}
+
+
+def section(*, repeats: int, cold: bool) -> Section:
+    """``--help``, the first frame with kernels in the cache, and with an empty cache if ``cold``."""
+    seconds = help_time(repeats + 1)
+    rows = [Row("--help", f"{seconds:.2f} s", *at_most(seconds, HELP, f"{HELP:g} s"))]
+    data: dict[str, Any] = {"help_s": seconds, "warm": {}, "cold": {}}
+    for scene in SCENES:
+        first_frame(scene)  # what is not in the cache yet, is now
+        runs = [first_frame(scene) for _ in range(repeats)]
+        data["warm"][scene] = runs
+        best = min(run["seconds"] for run in runs)
+        rows.append(
+            Row(
+                f"first frame of {scene}, warm",
+                f"{best:.2f} s",
+                *at_most(best, FIRST_FRAME, f"{FIRST_FRAME:g} s"),
+            )
+        )
+    if cold:
+        scene = SCENES[0]
+        with tempfile.TemporaryDirectory() as folder:
+            run = first_frame(scene, folder)
+        data["cold"][scene] = run
+        marks = run["marks"]
+        solver = marks["solver kernels"] - marks["drawing kernels"]
+        drawing = marks["drawing kernels"] - marks["imported"]
+        rows.append(
+            Row(
+                f"first frame of {scene}, cold",
+                f"{run['seconds']:.1f} s, of which compiling: solver {solver:.1f}, drawing {drawing:.1f}",
+            )
+        )
+    else:
+        rows.append(Row("first frame, cold", "not measured (--quick)"))
+    return Section("startup", "Start-up, wall time", tuple(rows), data)

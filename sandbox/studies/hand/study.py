@@ -1,0 +1,204 @@
+"""The study of the hand: what locks at which strength, whether every tour keeps its word, and what random hands can break."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.warmup import compile_kernels
+from sandbox.interrupts import deferred
+from sandbox.lessons import tours
+from sandbox.studies.common.folder import machine, write_text
+from sandbox.studies.common.pool import Pool, stopping
+from sandbox.studies.hand.jobs import Job, Row, as_line, carry_out
+from sandbox.studies.hand.report import as_json, as_markdown, as_table
+from scenes import registry
+from scenes.scene import HAND_STRENGTH, STRONGEST, Ingredients
+
+KEPT = "unfinished.jsonl"  # runs so far, until all are there
+SEEDS, QUICK_SEEDS = 20, 2
+MACHINE_SEEDS = 3  # of the scenes whose drive only says what force it needs
+RANDOM, QUICK_RANDOM = 1000, 40  # random hands in all
+STRENGTHS = {"hopper": (2.0, 4.0, 6.0, 8.0), "intruder": (0.3, 0.6, 0.9, 1.2)}  # [k R]
+
+
+@dataclass(frozen=True)
+class Study:
+    """What the study came to: rows of all runs, and what went wrong with those that have none."""
+
+    rows: tuple[Row, ...]
+    failures: tuple[str, ...]
+    interrupted: bool
+
+
+def scenes_with_a_hand() -> tuple[str, ...]:
+    """Those whose hand has a strength."""
+    return tuple(
+        name
+        for name in registry.names()
+        if any(p.name == HAND_STRENGTH for p in registry.get(name).parameters)
+    )
+
+
+def pushes(seeds: int) -> list[Job]:
+    """The scenes in which a hand locks, at four strengths each."""
+    return [
+        Job("push", scene, packing, seed, strength)
+        for scene, strengths in STRENGTHS.items()
+        for strength in strengths
+        for packing in registry.get(scene).packings
+        for seed in range(1, seeds + 1)
+    ]
+
+
+def machines(seeds: int) -> list[Job]:
+    """The other scenes under a testing machine: the peaks of the force say what a hand would need."""
+    return [
+        Job("push", scene, packing, seed, STRONGEST)
+        for scene in scenes_with_a_hand()
+        if scene not in STRENGTHS
+        for packing in registry.get(scene).packings
+        for seed in range(1, seeds + 1)
+    ]
+
+
+def random_hands(count: int) -> list[Job]:
+    """Spread evenly over scenes and packings, with all defaults; each has a seed of its own."""
+    places = [
+        (scene, packing)
+        for scene in scenes_with_a_hand()
+        for packing in registry.get(scene).packings
+    ]
+    return [Job("random", *places[k % len(places)], 1 + k // len(places)) for k in range(count)]
+
+
+def played_tours(seeds: int) -> list[Job]:
+    """Every tour on every seed."""
+    return [
+        Job("tour", scene, "", seed) for scene in tours.scenes() for seed in range(1, seeds + 1)
+    ]
+
+
+def all_jobs(quick: bool = False) -> list[Job]:
+    """What the study carries out."""
+    seeds, count = (QUICK_SEEDS, QUICK_RANDOM) if quick else (SEEDS, RANDOM)
+    return [
+        *pushes(seeds),
+        *played_tours(seeds),
+        *random_hands(count),
+        *machines(min(seeds, MACHINE_SEEDS)),
+    ]
+
+
+def study(
+    folder: Path, *, quick: bool = False, jobs: int = 2, chosen: Sequence[Job] | None = None
+) -> Study:
+    """Carry out all runs. Ctrl-C keeps the finished ones; the same call goes on from there."""
+    began = time.perf_counter()
+    wanted = {job.key(): job for job in (all_jobs(quick) if chosen is None else chosen)}
+    kept = folder / KEPT
+    rows = {key: row for key, row in _read(kept).items() if key in wanted}
+    found, failures = len(rows), list[str]()
+    missing = [job for key, job in wanted.items() if key not in rows]
+    try:
+        _run(missing, found, kept, jobs, rows, failures)
+    except KeyboardInterrupt:
+        return Study(tuple(rows.values()), tuple(failures), interrupted=True)
+    ordered = [rows[key] for key in wanted if key in rows]
+    about = {
+        "quick": quick,
+        "seconds": round(time.perf_counter() - began, 1),
+        "runs_from_before": found,
+        **machine(),
+    }
+    write_text(folder / "runs.csv", as_table(ordered))
+    write_text(folder / "results.json", as_json(ordered, failures, about))
+    write_text(folder / "hand.md", as_markdown(ordered, failures, about))
+    kept.unlink(missing_ok=True)
+    return Study(tuple(ordered), tuple(failures), interrupted=False)
+
+
+def _run(
+    missing: Sequence[Job],
+    found: int,
+    kept: Path,
+    jobs: int,
+    rows: dict[str, Row],
+    failures: list[str],
+) -> None:
+    from tqdm import tqdm
+
+    if not missing:
+        return
+    watched = sys.stderr.isatty()
+    with (
+        tqdm(
+            total=found + len(missing),
+            initial=found,
+            unit="run",
+            file=sys.stderr,
+            mininterval=0.1 if watched else 10.0,
+            ncols=None if watched else 100,
+        ) as bar,
+        Pool(jobs) as pool,
+    ):
+        bar.set_description_str("compiling")
+        pool.call(_compile).exception()  # what fails here fails again, and is told then
+        bar.set_description_str("hands")
+        under_way: dict[Future[Row], Job] = {}
+        waiting = list(reversed(missing))
+        while waiting or under_way:
+            while waiting and len(under_way) < jobs:
+                job = waiting.pop()
+                under_way[pool.call(_carry_out, job)] = job
+            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                job = under_way.pop(future)
+                error = future.exception()
+                if error is None:
+                    row = future.result()
+                    rows[job.key()] = row
+                    with deferred(), kept.open("a", encoding="utf-8") as file:
+                        file.write(as_line(row, job.key()))
+                else:
+                    failures.append(f"{job}: {type(error).__name__}: {error}")
+                    bar.write(f"failed: {failures[-1]}", file=sys.stderr)
+                bar.update()
+
+
+def _carry_out(job: Job) -> Row:
+    """In a process of the pool."""
+    return carry_out(job, stopping)
+
+
+def _compile() -> None:
+    """Every sort of kernels that the scenes use, once."""
+    sorts = [registry.get(name) for name in registry.names()]
+    terms: set[Ingredients] = {scene.ingredients(scene.settings()) for scene in sorts}
+    for each in terms:
+        compile_kernels(
+            periodic=each.periodic,
+            rigid=each.rigid,
+            friction=each.friction,
+            gravity=each.gravity,
+        )
+
+
+def _read(path: Path) -> dict[str, Row]:
+    """Runs that an interrupted study has left, by key; a damaged line is done again."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, ValueError):
+        return {}
+    found = {}
+    for line in lines:
+        try:
+            row = json.loads(line)
+            found[str(row.pop("key"))] = row
+        except (ValueError, KeyError, TypeError, AttributeError):
+            continue
+    return found

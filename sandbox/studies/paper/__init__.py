@@ -1,0 +1,1 @@
+"""Study: the claims of the paper."""

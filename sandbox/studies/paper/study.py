@@ -1,0 +1,145 @@
+"""The study of the paper's claims: which runs are needed, carry them out, judge, write tables and figures.
+
+Haver, Acuña et al., "Elasticity and rheology of auxetic granular metamaterials", PNAS 2024, doi:10.1073/pnas.2317915121.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.errors import InputError, did_you_mean
+from sandbox.bars import bar_options
+from sandbox.studies.common.folder import machine, write_text
+from sandbox.studies.paper import bulk as paper_bulk
+from sandbox.studies.paper import flow as paper_flow
+from sandbox.studies.paper import grains as paper_grains
+from sandbox.studies.paper import shear as paper_shear
+from sandbox.studies.paper.claims import Claim, Finding
+from sandbox.studies.paper.report import Judged, as_json, as_markdown
+from sandbox.studies.paper.runs import Request, Result, Store, run_all
+
+CLAIMS: tuple[Claim, ...] = (
+    *paper_grains.CLAIMS,
+    *paper_bulk.CLAIMS,
+    *paper_shear.CLAIMS,
+    *paper_flow.CLAIMS,
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a study came to."""
+
+    judged: tuple[Judged, ...]
+    runs: int
+    failed: int
+    interrupted: bool
+
+
+def choose(names: Sequence[str] | None, claims: Sequence[Claim] = CLAIMS) -> list[Claim]:
+    """The claims of those names, or all, in their own order. Raises InputError for an unknown name."""
+    known = [claim.name for claim in claims]
+    for name in names or ():
+        if name not in known:
+            hint = did_you_mean(name, known) or f": there are {', '.join(known)}"
+            raise InputError(f"--only {name}: no such claim{hint}")
+    return [claim for claim in claims if not names or claim.name in names]
+
+
+def study(
+    folder: Path,
+    *,
+    quick: bool = False,
+    only: Sequence[str] | None = None,
+    jobs: int = 2,
+    claims: Sequence[Claim] = CLAIMS,
+) -> Outcome:
+    """Measure the claims. Everything that was finished in ``folder`` before is not run again.
+
+    Ctrl-C ends it with nothing but the finished runs kept; the outcome says so.
+    """
+    began = time.perf_counter()
+    chosen = choose(only, claims)
+    plans = {claim.name: tuple(claim.runs(quick)) for claim in chosen}
+    store = Store(folder / "runs")
+    results: dict[Request, Result] = {}
+    missing: list[Request] = []
+    for request in dict.fromkeys(request for plan in plans.values() for request in plan):
+        kept = store.read(request)
+        if kept is None:
+            missing.append(request)
+        else:
+            results[request] = kept
+    found = len(results)
+    try:
+        _run(missing, found, store, jobs, results)
+    except KeyboardInterrupt:
+        return Outcome((), len(results), _failures(results), interrupted=True)
+    judged = tuple(
+        Judged(claim, claim.find([results[request] for request in plans[claim.name]]))
+        for claim in chosen
+    )
+    seconds = time.perf_counter() - began
+    _draw(chosen, plans, results, folder)
+    about = {"quick": quick, "seconds": round(seconds, 1), "runs_from_before": found, **machine()}
+    write_text(folder / "results.json", as_json(judged, list(results.values()), about))
+    write_text(folder / "claims.md", as_markdown(judged, list(results.values()), about))
+    return Outcome(judged, len(results), _failures(results), interrupted=False)
+
+
+def _run(
+    missing: Sequence[Request],
+    found: int,
+    store: Store,
+    jobs: int,
+    results: dict[Request, Result],
+) -> None:
+    from tqdm import tqdm
+
+    count = found + len(missing)
+    with tqdm(total=count, initial=found, unit="run", desc="runs", **bar_options()) as bar:
+
+        def done(result: Result) -> None:
+            results[result.request] = result
+            request = result.request
+            bar.set_description_str(f"{request.scene}, {request.packing}"[:32].ljust(32), False)
+            bar.update()
+            if result.trouble is not None:
+                what = "failed" if result.failure else "ended early"
+                bar.write(
+                    f"{what}: {request.scene}, {request.packing}, seed {request.seed}: {result.trouble}",
+                    file=sys.stderr,
+                )
+
+        run_all(missing, store, jobs, done, lambda: bar.set_description_str("compiling".ljust(32)))
+
+
+def _draw(
+    claims: Sequence[Claim],
+    plans: dict[str, tuple[Request, ...]],
+    results: dict[Request, Result],
+    folder: Path,
+) -> None:
+    """The figures whose runs have all succeeded."""
+    from sandbox.studies.paper.figures import draw
+
+    for claim in claims:
+        mine = [results[request] for request in plans[claim.name]]
+        short = claim.bears_short_runs
+        if any(result.failure or (result.ended and not short) for result in mine):
+            continue
+        for figure in claim.figures:
+            draw(figure, mine, folder / f"{figure.file}.png")
+
+
+def _failures(results: dict[Request, Result]) -> int:
+    return sum(result.failure is not None for result in results.values())
+
+
+def summary(finding: Finding) -> str:
+    """One line for a terminal."""
+    return f"{finding.verdict:<13}  {finding.decided_by}"

@@ -1,1 +1,0 @@
-"""What observes a session and never changes it: window, video, table."""

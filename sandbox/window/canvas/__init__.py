@@ -1,0 +1,1 @@
+"""What a mouse does to the grains."""

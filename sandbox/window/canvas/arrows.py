@@ -1,0 +1,106 @@
+"""The hand by keyboard: with the canvas in focus the arrow keys pull a handle; Tab goes from handle to handle."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+
+from sandbox.draw.overlays import KNOB
+from sandbox.draw.painter import Painter
+from sandbox.draw.widgets.look import draw_ring, ring_colour
+from sandbox.session.commands import Grab, Move, Release
+from sandbox.session.frame import HandleState
+from sandbox.window.focus import CANVAS
+from sandbox.window.keys import Action
+from sandbox.window.parts import Silent
+from sandbox.window.stage import Stage
+
+STEP = 0.25  # of the hand, a press [R]
+LEAD = 2.0  # the hand is never farther ahead of the body [R]
+PAUSE = 1.0  # a press after such a pause begins a gesture of its own, to be undone by itself [s]
+WAYS = {
+    Action.LEFT: (-1.0, 0.0),
+    Action.RIGHT: (1.0, 0.0),
+    Action.UP: (0.0, 1.0),
+    Action.DOWN: (0.0, -1.0),
+}
+
+
+class Arrows(Silent):
+    """Grab at the first press, a step of the hand each, release when the keyboard goes elsewhere."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self._held = ""  # name of the handle
+        self._target = (0.0, 0.0)
+        self._pressed = -math.inf  # when [s]
+
+    def stops(self) -> Sequence[str]:
+        """The handles; the canvas itself where there are none."""
+        frame = self.stage.panes.snapshot.frame
+        handles = () if frame is None else frame.handles
+        return [f"{CANVAS}/{handle.name}" for handle in handles] or [CANVAS]
+
+    def handle_state(self) -> HandleState | None:
+        """The handle that the arrow keys pull."""
+        frame, focus = self.stage.panes.snapshot.frame, self.stage.focus
+        if frame is None or not frame.handles or not focus.on_canvas:
+            return None
+        name = focus.name.partition("/")[2]
+        return next((h for h in frame.handles if h.name == name), frame.handles[0])
+
+    def act(self, action: Action) -> bool:
+        """An arrow key, with the keyboard on the canvas."""
+        handle = self.handle_state()
+        if action not in WAYS or handle is None or self.stage.mouse.holding:
+            return False
+        step = self._step(handle, *WAYS[action])
+        if step == (0.0, 0.0):
+            return True
+        now = time.perf_counter()
+        if handle.name != self._held or now - self._pressed > PAUSE:
+            if self._held and self._held != handle.name:
+                self.stage.send(Release(self._held))
+            self._held = handle.name
+            start = handle.target if handle.target is not None else (handle.x, handle.y)
+            self._target = start
+            self.stage.send(Grab(handle.name))
+        self._pressed = now
+        x, y = self._target[0] + step[0] - handle.x, self._target[1] + step[1] - handle.y
+        far = max(math.hypot(x, y) / LEAD, 1.0)
+        self._target = (handle.x + x / far, handle.y + y / far)
+        self.stage.send(Move(handle.name, *self._target))
+        self.stage.has_begun()
+        return True
+
+    def _step(self, handle: HandleState, x: float, y: float) -> tuple[float, float]:
+        """A step of the hand; along the line that the handle can slide on."""
+        if handle.axis is None:
+            return STEP * x, STEP * y
+        along = STEP * (x * handle.axis[0] + y * handle.axis[1])
+        return along * handle.axis[0], along * handle.axis[1]
+
+    def tick(self, now: float) -> bool:
+        """Let go when the keyboard has gone elsewhere, or the mouse takes over."""
+        del now
+        handle = self.handle_state()
+        if self._held and (handle is None or handle.name != self._held or self.stage.mouse.holding):
+            if not self.stage.mouse.holding:
+                self.stage.send(Release(self._held))
+            self._held = ""
+        return False
+
+    def draw(self, painter: Painter) -> None:
+        """The ring round the canvas and the handle, when Tab has brought the keyboard here."""
+        if not self.stage.focus.ring.startswith(CANVAS):
+            return
+        handle = self.handle_state()
+        for _, camera, rect in self.stage.picture.panes():
+            draw_ring(painter, rect.inflate(-round(4 * painter.scale), -round(4 * painter.scale)))
+            if handle is not None:
+                x, y = camera.to_screen(handle.x, handle.y)
+                if math.isfinite(x) and math.isfinite(y):
+                    radius = 1.9 * KNOB * painter.scale
+                    width, colour = 3.0 * painter.scale, ring_colour(painter.theme)
+                    painter.ring(x, y, radius, width, colour, clip=rect)

@@ -1,0 +1,316 @@
+"""The guided tour in the window: a card that asks, waits until it is done, and explains.
+
+It stands above the panel; where there is no panel, in the corner of the canvas where it covers no handle and the fewest grains.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pygame
+
+from core.errors import InputError
+from sandbox.draw.pages.tour_card import (
+    BACK,
+    CLOSE,
+    NEXT,
+    CardLayout,
+    TourPage,
+    card_layout,
+    draw_tour_card,
+)
+from sandbox.draw.painter import Painter
+from sandbox.draw.text import Type
+from sandbox.lessons import tours
+from sandbox.lessons.tours import Moment, Step
+from sandbox.window.keys import Action
+from sandbox.window.parts import Silent
+from sandbox.window.stage import Stage
+from sandbox.words import words
+from scenes.text import message
+
+WIDTH = 372.0  # of the card on the canvas at scale 1 [px]
+MARGIN = 10.0  # round it, at scale 1 [px]
+WIDEST = 0.94  # of the canvas
+SHARE = 0.42  # of its width, unless letters would become smaller than at scale 1
+LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
+KNOB = 20.0  # room round a handle at scale 1 [px]
+HANDLE_COST = 10_000  # a covered handle counts as so many covered grains
+PLOT_COST = 1_000  # and a covered plot
+
+
+class Guide(Silent):
+    """Which tour is on, which step, and whether it is done."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.scene = ""
+        self.index = 0
+        self.done = False
+        self._steps: tuple[Step, ...] = ()
+        self._then: Moment | None = None  # what there was when the step began
+        self._hover = ""
+        self._corner = 0
+        self._small: Type | None = None
+        self._measured: tuple[object, CardLayout] | None = None
+
+    @property
+    def on(self) -> bool:
+        """Is a tour on?"""
+        return bool(self._steps)
+
+    @property
+    def step(self) -> Step:
+        """The present one."""
+        return self._steps[self.index]
+
+    # -- going through it --
+
+    def start(self, scene: str) -> None:
+        """Begin the tour of a scene."""
+        self._steps, self.scene = tours.steps(scene), scene
+        if not self._steps:
+            self.stage.toast(words.NO_TOUR)
+            return
+        self.stage.has_begun()
+        if not self._steps[0].packings:
+            self.stage.start(scene)
+        self._go(0)
+
+    def close(self) -> None:
+        """No more of it."""
+        self._steps, self._hover = (), ""
+        if self.stage.focus.name in (NEXT, BACK, CLOSE):
+            self.stage.focus.leave()
+        self.stage.redraw(True)
+
+    def next(self) -> None:
+        """The explanation, if it is not shown yet; else the next step; after the last the end."""
+        page = self.page
+        if page.do and not self.done and words.tour_text(self.scene, self.step.key, "why"):
+            self.done = True
+        elif self.index + 1 < len(self._steps):
+            self._go(self.index + 1)
+        else:
+            self.close()
+            self.stage.toast(words.TOUR_OVER)
+        self.stage.redraw(True)
+
+    def back(self) -> None:
+        """The step before."""
+        if self.index:
+            self._go(self.index - 1)
+
+    def _go(self, index: int) -> None:
+        self.index, self.done, self._then = index, False, None
+        step = self.step
+        if step.packings:
+            try:
+                self._begin(step)
+            except InputError as error:
+                self.close()
+                self.stage.toast(words.say(message(error)))
+                return
+        if step.view:
+            self.stage.renderer.set_view(step.view)
+        self.done = step.until is None
+        self.stage.redraw(True)
+
+    def _begin(self, step: Step) -> None:
+        several = len(step.packings) > 1
+        if not several:
+            self.stage.panes.packing = step.packings[0]
+        self.stage.start(self.scene, step.settings, step.packings if several else ())
+
+    def tick(self, now: float) -> bool:
+        """Has it been done?"""
+        del now
+        if not self.on:
+            return False
+        run = self.stage.panes
+        if run.scene != self.scene:
+            self.close()
+            return True
+        frames = [seen.frame for seen in run.snapshots if seen.phase == "running"]
+        there = [frame for frame in frames if frame is not None]
+        if self.done or self.step.until is None or len(there) < max(len(run.snapshots), 1):
+            return False
+        moment = Moment.of(there, self.stage.renderer.view.name)
+        if self._then is None:
+            self._then = moment
+        self.done = tours.met(self.step.until, self._then, moment)
+        return self.done
+
+    # -- what a person does --
+
+    def act(self, action: Action) -> bool:
+        """The key of tours begins one, or ends it."""
+        if action is not Action.TOUR:
+            return False
+        if self.on:
+            self.close()
+        else:
+            self.start(self.stage.panes.scene)
+        return True
+
+    def handle(self, event: pygame.event.Event) -> bool:
+        """Buttons by mouse; Enter, Backspace and Escape while the keyboard is at no other control."""
+        if not self.on:
+            return False
+        if event.type == pygame.KEYDOWN:
+            return self._key(event.key)
+        if event.type not in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN):
+            return False
+        if self.stage.mouse.holding:
+            return False
+        self._hover = self._button_at(event.pos)
+        inside = self.rect.collidepoint(event.pos)
+        if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._hover:
+            self._press(self._hover)
+        return inside
+
+    def _key(self, key: int) -> bool:
+        focus = self.stage.focus
+        enter = key in (pygame.K_RETURN, pygame.K_KP_ENTER)
+        if focus.name in self.stops():
+            if enter or key == pygame.K_SPACE:
+                self._press(focus.name)
+                return True
+            return False
+        keys = {pygame.K_BACKSPACE: BACK, pygame.K_ESCAPE: CLOSE}
+        name = NEXT if enter else keys.get(key, "")
+        if not name or not focus.on_canvas:
+            return False
+        self._press(name)
+        return True
+
+    def _press(self, name: str) -> None:
+        {NEXT: self.next, BACK: self.back, CLOSE: self.close}[name]()
+
+    def stops(self) -> list[str]:
+        """Buttons that Tab goes to."""
+        if not self.on:
+            return []
+        return [NEXT, CLOSE] if self.index == 0 else [NEXT, BACK, CLOSE]
+
+    def cursor(self) -> int | None:
+        """A hand over a button, an arrow over the card."""
+        if not self.on or self.stage.mouse.holding:
+            return None
+        if not self.rect.collidepoint(pygame.mouse.get_pos()):
+            return None
+        return pygame.SYSTEM_CURSOR_HAND if self._hover else pygame.SYSTEM_CURSOR_ARROW
+
+    def _button_at(self, place: tuple[int, int]) -> str:
+        rect = self.rect
+        buttons = self._layout(rect.width).buttons
+        for name, button in buttons.items():
+            if button.move(rect.topleft).collidepoint(place):
+                return name
+        return ""
+
+    # -- where it is, and what it says --
+
+    @property
+    def page(self) -> TourPage:
+        """What the card shows now."""
+        scene, key = self.scene, self.step.key
+        do = words.tour_text(scene, key, "do")
+        why = words.tour_text(scene, key, "why")
+        waiting = bool(do and why and not self.done)
+        last = self.index + 1 == len(self._steps)
+        onward = words.TOUR_WHY if waiting else words.TOUR_END if last else words.TOUR_NEXT
+        return TourPage(
+            title=words.title(scene) or scene,
+            step=self.index,
+            steps=len(self._steps),
+            say=words.tour_text(scene, key, "say"),
+            do=do,
+            done=self.done,
+            why=why if self.done else "",
+            onward=onward,
+        )
+
+    @property
+    def docked(self) -> int:
+        """How much of the panel's height the card takes, margins included [px]; 0: it stands on the canvas."""
+        panel = self.stage.renderer.layout.panel
+        if not self.on or not panel.width:
+            return 0
+        margin = self._margin
+        tall = self._layout(panel.width - 2 * margin).height + 2 * margin
+        return tall if panel.height - tall >= LEAST_PANEL * self.stage.renderer.scale else 0
+
+    @property
+    def rect(self) -> pygame.Rect:
+        """Where the card is in the window [px]."""
+        layout, margin = self.stage.renderer.layout, self._margin
+        if tall := self.docked:
+            panel = layout.panel
+            return pygame.Rect(
+                panel.left + margin, panel.top + margin, panel.width - 2 * margin, tall - 2 * margin
+            )
+        canvas = layout.canvases[0].unionall(list(layout.canvases))
+        width = min(round(WIDTH * self._type.scale), round(WIDEST * canvas.width))
+        card = pygame.Rect(0, 0, width, self._layout(width).height)
+        room = canvas.inflate(-2 * margin, -2 * margin)
+        lower = pygame.Rect(room.left, 0, room.width, layout.status.top - margin)  # over the plot
+        corners = [card.copy() for _ in range(6)]
+        corners[0].topright, corners[1].topleft = room.topright, room.topleft
+        corners[2].bottomright, corners[3].bottomleft = room.bottomright, room.bottomleft
+        corners[4].bottomright, corners[5].bottomleft = lower.bottomright, lower.bottomleft
+        costs = [self._covered(corner) for corner in corners]
+        for index, corner in enumerate(corners):
+            costs[index] += 0 if room.contains(corner) else PLOT_COST
+        if costs[self._corner] >= HANDLE_COST or self._then is None:
+            self._corner = costs.index(min(costs))
+        return corners[self._corner]
+
+    @property
+    def _type(self) -> Type:
+        """The type on the card: smaller than elsewhere where the card would hide the canvas."""
+        layout, type_ = self.stage.renderer.layout, self.stage.renderer.type
+        if layout.panel.width:
+            return type_
+        canvas = layout.canvases[-1].right - layout.canvases[0].left
+        scale = min(type_.scale, max(SHARE * canvas / WIDTH, 1.0))
+        if scale == type_.scale:
+            return type_
+        if self._small is None or self._small.scale != scale:
+            self._small = Type(scale)
+        return self._small
+
+    @property
+    def _margin(self) -> int:
+        return round(MARGIN * self.stage.renderer.scale)
+
+    def _layout(self, width: int) -> CardLayout:
+        """The card at that width [px]; measured again only when it has changed."""
+        page, type_ = self.page, self._type
+        key = (page, width, type_.scale)
+        if self._measured is None or self._measured[0] != key:
+            self._measured = key, card_layout(page, type_, width)
+        return self._measured[1]
+
+    def _covered(self, rect: pygame.Rect) -> int:
+        """What a card there would cover: grains, and handles for very many."""
+        cost, scale = 0, self.stage.renderer.scale
+        for frame, camera, _ in self.stage.picture.panes():
+            left, bottom = camera.to_world(rect.left, rect.bottom)
+            right, top = camera.to_world(rect.right, rect.top)
+            beside = (frame.x > left) & (frame.x < right)
+            cost += int(np.count_nonzero(beside & (frame.y > bottom) & (frame.y < top)))
+            near = rect.inflate(2 * KNOB * scale, 2 * KNOB * scale)
+            for handle in frame.handles:
+                cost += HANDLE_COST * near.collidepoint(camera.to_screen(handle.x, handle.y))
+        return cost
+
+    def draw(self, painter: Painter) -> None:
+        """The card."""
+        if not self.on:
+            return
+        own = painter
+        if self._type is not painter.type:
+            painter.flush()
+            own = Painter(painter.surface, painter.theme, self._type)
+        draw_tour_card(own, self.rect, self.page, focus=self.stage.focus.ring, hover=self._hover)
+        own.flush()

@@ -1,0 +1,57 @@
+"""How things look and sound, in the panel: what else there are keys for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Switch
+from sandbox.window.keys import Action
+from sandbox.window.sections import StageSection, Value
+from sandbox.words import language, words
+
+SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
+
+
+class LooksSection(StageSection):
+    """Force chains, theme, size of text, language, sound."""
+
+    name = "looks"
+
+    def controls(self) -> Sequence[Control]:
+        """Switches and choices."""
+        renderer = self.stage.renderer
+        themes = tuple(Option(name, words.THEMES[name]) for name in ("dark", "light"))
+        sizes = tuple(
+            Option(size, size.replace(".", words.decimal_sign()) + " ×") for size in SCALES
+        )
+        spoken = tuple(
+            Option(code, str(language.table(code)["name"])) for code in language.available()
+        )
+        chains = renderer.chains or renderer.view.only_chains
+        return [
+            Switch("looks/chains", words.LOOK_CHAINS, chains, help=words.LOOK_CHAINS_HELP),
+            Choice("looks/theme", words.LOOK_THEME, themes, renderer.theme.name),
+            Choice("looks/size", words.LOOK_SIZE, sizes, f"{renderer.scale:g}"),
+            Choice("looks/language", words.LOOK_LANGUAGE, spoken, language.present()),
+            Switch(
+                "looks/sound", words.LOOK_SOUND, self.stage.sound.on, help=words.LOOK_SOUND_HELP
+            ),
+            Button("looks/picture", words.LOOK_PICTURE, help=words.LOOK_PICTURE_HELP),
+        ]
+
+    def use(self, name: str, value: Value, done: bool) -> None:
+        """Change it."""
+        del done
+        match name.partition("/")[2]:
+            case "chains":
+                self.actions.act(Action.CHAINS)
+            case "sound":
+                self.actions.act(Action.SOUND)
+            case "picture":
+                self.actions.act(Action.SCREENSHOT)
+            case "theme":
+                self.stage.renderer.set_theme(str(value))
+            case "size":
+                self.actions.rescale(float(str(value)))
+            case "language":
+                self.actions.speak(str(value))

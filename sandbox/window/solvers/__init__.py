@@ -1,0 +1,1 @@
+"""Solver threads, and what packings side by side have in common."""

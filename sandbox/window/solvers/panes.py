@@ -1,0 +1,357 @@
+"""The runs that the window shows: one packing or several side by side, their threads, and what may be asked of them."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from core.errors import InputError
+from sandbox.files.autosave import Autosave, Leftover
+from sandbox.files.log_file import write_log
+from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.session.beginning import SceneFile
+from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
+from sandbox.session.frame import Frame
+from sandbox.session.session import Session
+from sandbox.window.solvers.conductor import Conductor
+from sandbox.window.solvers.in_step import begins_anew, comparable, way_back
+from sandbox.window.solvers.kept_curves import Curves
+from sandbox.window.solvers.solver_thread import Snapshot, SolverThread
+from sandbox.words import words
+from scenes import registry
+from scenes.text import message
+
+NOTHING_TO_SAVE = "there is nothing to save yet"
+PATIENCE = 2.0  # with a thread that is to end [s]
+LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
+MOST_MISSED = 1500  # increments that a packing that joins repeats; after more all begin anew
+
+
+@dataclass
+class Pane:
+    """One packing: its session and the thread that runs it."""
+
+    packing: str
+    session: Session
+    solver: SolverThread
+
+
+class Panes:
+    """At most one scene at a time, in one pane or several. Nothing here waits for a solver, except ``close``."""
+
+    def __init__(
+        self,
+        packing: str,
+        seed: int,
+        make: Callable[..., Session] = Session,
+        autosave: Autosave | None = None,
+    ) -> None:
+        self.autosave = autosave
+        self.packing = packing
+        self.seed = seed
+        self.scene = ""
+        self.curves = Curves()
+        self._make = make
+        self._settings: dict[str, object] = {}
+        self._built_with: dict[str, object] = {}  # settings when the scene was last built or reset
+        self._first = packing  # of the pane that was there first
+        self._straight = True  # has nobody gone back in time since the scene was last built?
+        self._gone_back = 0  # serial of the snapshot when somebody did
+        self._panes: list[Pane] = []
+        self._conductor = Conductor()
+        self._speed = math.inf
+        self._leaving: list[SolverThread] = []
+        self._paused_by_menu = False
+
+    # What is there.
+
+    @property
+    def snapshots(self) -> tuple[Snapshot, ...]:
+        """What the solvers' threads have published, from the left."""
+        return tuple(pane.solver.snapshot for pane in self._panes)
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The same of the packing that was there first."""
+        main = self._main
+        return Snapshot("stopped") if main is None else main.solver.snapshot
+
+    @property
+    def packings(self) -> tuple[str, ...]:
+        """Of the panes, from the left."""
+        return tuple(pane.packing for pane in self._panes)
+
+    @property
+    def comparing(self) -> bool:
+        """Are there several packings?"""
+        return len(self._panes) > 1
+
+    @property
+    def exists(self) -> bool:
+        """Has a scene been started?"""
+        return bool(self._panes)
+
+    @property
+    def paused(self) -> bool:
+        """Are the solvers held?"""
+        return bool(self._panes) and self._conductor.paused
+
+    @property
+    def _main(self) -> Pane | None:
+        if not self.comparing:
+            return self._panes[0] if self._panes else None
+        return next((p for p in self._panes if p.packing == self._first), self._panes[0])
+
+    # Beginning and ending.
+
+    def start(
+        self, scene: str, settings: Mapping[str, object] | None = None, packings: Sequence[str] = ()
+    ) -> None:
+        """Leave what runs and build a scene, with these packings side by side if any are named.
+
+        Raises InputError for what does not exist.
+        """
+        given = dict(settings or {})
+        kinds = tuple(packings) or (self.packing,)
+        sessions = [self._make(scene, kind, self.seed, dict(given)) for kind in kinds]
+        self._begin(scene, given, kinds, sessions)
+
+    def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
+        """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""
+        kept = file if isinstance(file, SceneFile) else read_scene(file)
+        session = Session.from_file(kept)
+        self.packing, self.seed = kept.packing, kept.seed
+        self._begin(kept.scene, dict(kept.settings), (kept.packing,), [session])
+
+    def take_up(self, leftover: Leftover) -> None:
+        """Go on where a program that is gone had to stop. Its autosave is taken away as soon as there is another."""
+        self.open(leftover.file)
+        if self.autosave is not None:
+            self.autosave.adopt(leftover)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write what there is down as a scene file. Raises InputError if that cannot be."""
+        made = self.snapshot.made
+        if made is None:
+            raise InputError(NOTHING_TO_SAVE)
+        try:
+            write_scene(path, made)
+        except OSError as error:
+            raise InputError(f"{os.fspath(path)}: {error.strerror or error}") from error
+
+    def _begin(
+        self,
+        scene: str,
+        given: dict[str, object],
+        kinds: tuple[str, ...],
+        sessions: Sequence[Session],
+    ) -> None:
+        """Leave what runs, and begin with these."""
+        self._keep_curves()
+        self._leave(self._panes)
+        self.scene, self._settings, self._built_with = scene, given, dict(given)
+        self._first = self.packing if self.packing in kinds else kinds[0]
+        self._straight = True
+        self._paused_by_menu = False
+        self._conductor = Conductor(begins_anew=self._begins_anew)
+        self._conductor.set_speed(self._speed)
+        self._panes = [self._pane(*each) for each in zip(kinds, sessions, strict=True)]
+
+    def compare(self) -> str:
+        """Put the scene's other packings beside the present one, or take them away; returns what to say."""
+        if self.comparing:
+            self._only_main()
+            return words.COMPARE_OFF
+        frame = self.snapshot.frame
+        kinds = comparable(self.scene)
+        if frame is None or self.snapshot.phase != "running":
+            return words.COMPARE_LATER
+        if len(kinds) < 2 or frame.packing not in kinds:
+            return words.COMPARE_NOTHING
+        repeat = self._can_be_repeated(frame)
+        if not repeat:
+            self.seed, self._settings = frame.seed, dict(frame.settings)
+            self._built_with = dict(self._settings)
+        self.packing = self._first = frame.packing
+        others = [kind for kind in kinds if kind != frame.packing]
+        try:
+            made = [self._another(kind) for kind in others]
+        except InputError as error:
+            return words.say(message(error))
+        if not repeat:
+            self.send(Reset())
+            self._conductor.forget_past()
+        panes = [self._pane(*each) for each in zip(others, made, strict=True)]
+        self._panes = sorted([*self._panes, *panes], key=lambda pane: kinds.index(pane.packing))
+        return words.COMPARE_ON if repeat else words.COMPARE_ANEW
+
+    def _another(self, kind: str) -> Session:
+        """The same start with another packing."""
+        main = self.snapshot.made
+        if main is not None and main.file is not None:
+            return Session.from_file(main.file.of_kind(kind))
+        return self._make(self.scene, kind, self.seed, dict(self._built_with))
+
+    def cancel(self) -> bool:
+        """Break off what is being built; True if a run is left to go on with.
+
+        Side by side, only the packing that was there first stays.
+        """
+        building = [s.phase in ("building", "catching up") for s in self.snapshots]
+        if not any(building):
+            return self.exists
+        first = self.snapshot
+        if self.comparing:
+            self._only_main()
+        if first.phase == "building" and self._panes:
+            self._panes[0].solver.cancel()
+            if first.frame is None:
+                self._leave(self._panes)
+                self._panes = []
+            else:
+                self._straight, self._gone_back = False, first.serial
+                self._follow(first.frame)
+        return self.exists
+
+    def _pane(self, packing: str, session: Session) -> Pane:
+        solver = SolverThread(session, self._conductor)
+        solver.start()
+        return Pane(packing, session, solver)
+
+    def _only_main(self) -> None:
+        main = self._main
+        self._keep_curves()
+        self._leave([pane for pane in self._panes if pane is not main])
+        self._panes = [] if main is None else [main]
+
+    def _leave(self, panes: Sequence[Pane]) -> None:
+        for pane in panes:
+            pane.solver.cancel()
+        # One that compiles ends by itself later.
+        self._leaving += [pane.solver for pane in panes if not pane.solver.stop(0.2)]
+
+    def _keep_curves(self) -> None:
+        for snapshot in self.snapshots:
+            self.curves.keep(snapshot.frame)
+
+    # What is asked of it.
+
+    def send(self, command: Command) -> None:
+        """A command to all solvers. Raises InputError for a setting that cannot be."""
+        if not self._panes:
+            return
+        if isinstance(command, Change):
+            self._note_change(command)
+        elif isinstance(command, (Undo, Redo, Recall)):
+            command = self._back(command)
+        if self._begins_anew(command):
+            self._keep_curves()
+            self._built_with = dict(self._settings)
+            self._straight = True
+        self._conductor.submit(command)
+
+    def reset(self) -> None:
+        """To the start; a run that has failed is built anew."""
+        made = self.snapshot.made
+        if not any(snapshot.phase == "failed" for snapshot in self.snapshots):
+            self.send(Reset())
+        elif made is not None and made.file is not None:
+            self.open(made.file)
+        else:
+            self.start(self.scene, self._settings, self.packings if self.comparing else ())
+
+    def pause_or_go_on(self) -> None:
+        """Hold, or go on."""
+        self._conductor.pause(not self._conductor.paused)
+
+    def step(self) -> None:
+        """One increment."""
+        self._conductor.step()
+
+    def set_speed(self, increments_per_second: float) -> None:
+        """No more increments a second than that; inf: as many as the solvers manage."""
+        self._speed = increments_per_second
+        self._conductor.set_speed(increments_per_second)
+
+    def hold(self) -> None:
+        """Pause while the menu is open."""
+        if self._panes and not self._conductor.paused:
+            self._paused_by_menu = True
+            self._conductor.pause(True)
+
+    def go_on(self) -> None:
+        """The menu was closed: as it was before."""
+        if self._panes:
+            self.packing = self._first  # whatever was looked at in the menu
+        if self._paused_by_menu:
+            self._conductor.pause(False)
+        self._paused_by_menu = False
+
+    def tick(self) -> None:
+        """Once a picture: what was undone may be a packing, a seed or a setting."""
+        seen = self.snapshot
+        if self.autosave is not None:
+            self.autosave.keep(seen.made)
+        if not self._straight and seen.serial > self._gone_back and seen.phase == "running":
+            self._follow(seen.frame)
+
+    def close(self, log: str | os.PathLike[str] | None, clean: bool = True) -> bool:
+        """End the threads and write the session's log if one is wanted, side by side that of the first packing.
+
+        A ``clean`` end takes the autosave away. False if a thread is still compiling. Raises InputError if the log cannot be
+        written.
+        """
+        main = self._main
+        if self.autosave is not None:
+            self.autosave.keep(self.snapshot.made)
+            self.autosave.close(clean)
+        wanted = log is not None and self.snapshot.frame is not None
+        others = [pane.solver for pane in self._panes if pane is not main]
+        ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
+        if log is not None and wanted and ended and main is not None:
+            try:
+                write_log(log, main.session.log())
+            except OSError as error:
+                raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
+        stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
+        return all(stopped) and ended
+
+    # What is known of the session without asking it.
+
+    def _note_change(self, change: Change) -> None:
+        if change.name == "seed" and isinstance(change.value, int):
+            self.seed = change.value
+        elif change.name == "packing":
+            self.packing = self._first = str(change.value)
+            self._panes[0].packing = self._first
+        elif change.name != "scene":
+            wanted = {**self._settings, change.name: change.value}
+            if self.scene in registry.names():
+                registry.get(self.scene).settings(wanted)
+            self._settings = wanted
+
+    def _back(self, command: Undo | Redo | Recall) -> Command:
+        """A way back that all packings can go. Raises InputError if there is none."""
+        way = way_back(command, [seen.frame for seen in self.snapshots if seen.frame is not None])
+        self._straight, self._gone_back = False, self.snapshot.serial
+        return way
+
+    def _begins_anew(self, command: Command) -> bool:
+        return begins_anew(self.scene, command)
+
+    def _can_be_repeated(self, frame: Frame) -> bool:
+        """Can another packing be brought to where this one is, by the same commands?"""
+        settings = registry.get(self.scene).settings(self._settings)
+        same = frame.seed == self.seed and dict(frame.settings) in ({}, settings)
+        return same and self._straight and self._conductor.turns <= MOST_MISSED
+
+    def _follow(self, frame: Frame | None) -> None:
+        """What the solver has is what there is."""
+        if frame is None:
+            return
+        if not self.comparing:
+            self.packing = self._first = self._panes[0].packing = frame.packing
+        self.seed = frame.seed
+        self._settings = dict(frame.settings)

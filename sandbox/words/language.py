@@ -1,0 +1,126 @@
+"""The present language. One table a language in sandbox/words holds every word that is drawn; the English one decides what
+there is to be said."""
+
+from __future__ import annotations
+
+import locale
+import os
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from core.errors import InputError
+from scenes.text import Text, filled
+
+FOLDER = Path(__file__).parent
+SOURCE = "en"
+
+
+class _Present:
+    """Which language is spoken now. Only the thread that draws changes it or asks for it."""
+
+    code = SOURCE
+
+
+def available() -> tuple[str, ...]:
+    """Codes of all languages, English first."""
+    codes = sorted(path.stem for path in FOLDER.glob("*.toml"))
+    return (SOURCE, *(code for code in codes if code != SOURCE))
+
+
+def present() -> str:
+    """Code of the language that is spoken now."""
+    return _Present.code
+
+
+def use(code: str) -> None:
+    """Speak that language from now on. Raises InputError for an unknown one."""
+    if code not in available():
+        raise InputError(f"unknown language {code!r}: choose {', '.join(available())}")
+    _Present.code = code
+
+
+def after(code: str) -> str:
+    """The next language; after the last the first."""
+    codes = available()
+    return codes[(codes.index(code) + 1) % len(codes)]
+
+
+def of_environment() -> str:
+    """The language of the person at this computer, as far as there is a table of it; English otherwise."""
+    variables = ("LC_ALL", "LC_MESSAGES", "LANG")
+    said = next((os.environ[name] for name in variables if os.environ.get(name)), "")
+    code = (said or locale.getlocale()[0] or "").lower()
+    # Windows writes German_Germany where others write de_DE.
+    code = "de" if code.startswith("german") else code[:2]
+    return code if code in available() else SOURCE
+
+
+@cache
+def table(code: str) -> dict[str, Any]:
+    """All words of a language, as its file has them."""
+    with (FOLDER / f"{code}.toml").open("rb") as file:
+        return tomllib.load(file)
+
+
+def find(*keys: str) -> Any:
+    """What the present language has under these keys, or else English; None if neither has anything."""
+    for code in dict.fromkeys((present(), SOURCE)):
+        found: Any = table(code)
+        for key in keys:
+            found = found.get(key) if isinstance(found, dict) else None
+        if found is not None:
+            return found
+    return None
+
+
+def decimal_sign() -> str:
+    """What stands before the decimals of a number."""
+    return str(find("decimal"))
+
+
+def say(text: str) -> str:
+    """What a scene or the solver says, in the present language; as it is, if nobody has translated it."""
+    template = text.template if isinstance(text, Text) else text
+    key = _texts().get(template)
+    if key is not None:
+        template = find("texts", key)
+    if not isinstance(text, Text):
+        return template
+    values = {
+        name: say(value) if isinstance(value, str) else value for name, value in text.values.items()
+    }
+    return filled(template, values, decimal_sign())
+
+
+@cache
+def _texts() -> dict[str, str]:
+    """English texts of scenes and solver, and the keys they have in the tables."""
+    return {text: key for key, text in table(SOURCE)["texts"].items()}
+
+
+class Section(Mapping[str, str]):
+    """Words that belong together, always in the present language."""
+
+    def __init__(self, *keys: str) -> None:
+        self._keys = keys
+
+    def _source(self) -> dict[str, str]:
+        found: Any = table(SOURCE)
+        for key in self._keys:
+            found = found[key]
+        return dict(found)
+
+    def __getitem__(self, key: str) -> str:
+        found = find(*self._keys, key)
+        if found is None:
+            raise KeyError(key)
+        return str(found)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._source())
+
+    def __len__(self) -> int:
+        return len(self._source())

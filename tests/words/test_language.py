@@ -1,0 +1,240 @@
+"""Every word stands in every table, with the same placeholders, and what the program says is found there."""
+
+from __future__ import annotations
+
+import ast
+import re
+import string
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.errors import InputError
+from sandbox.draw.numbers import number, percent
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
+from sandbox.words import language, words
+from scenes import registry
+from scenes.text import Text, message
+
+REPOSITORY = Path(__file__).parents[2]
+SOURCES = [
+    path for part in ("core", "scenes", "sandbox") for path in (REPOSITORY / part).rglob("*.py")
+]
+TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
+OTHERS = [code for code in language.available() if code != language.SOURCE]
+
+
+@pytest.fixture(autouse=True)
+def english_again() -> Iterator[None]:
+    yield
+    language.use(language.SOURCE)
+
+
+def leaves(table: Any, at: str = "") -> Iterator[tuple[str, str]]:
+    """Every text in a table and where it stands."""
+    if isinstance(table, str):
+        yield at, table
+        return
+    items = table.items() if isinstance(table, dict) else enumerate(table)
+    for key, value in items:
+        yield from leaves(value, f"{at}.{key}")
+
+
+def placeholders(text: str) -> set[tuple[str, str | None]]:
+    return {(name, spec) for _, name, spec, _ in string.Formatter().parse(text) if name is not None}
+
+
+def test_english_comes_first_and_german_is_there() -> None:
+    assert language.available() == ("en", "de")
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_every_table_says_the_same_things(code: str) -> None:
+    source, other = (dict(leaves(language.table(c))) for c in (language.SOURCE, code))
+    assert sorted(other) == sorted(source)
+    for key, text in source.items():
+        assert other[key].strip(), key
+        assert placeholders(other[key]) == placeholders(text), key
+        assert ("[" in other[key]) == ("[" in text), key
+
+
+@pytest.mark.parametrize("code", OTHERS)
+def test_nothing_was_forgotten(code: str) -> None:
+    """A text that is the same in both languages is a name, a sign, or a word that both have."""
+    source, other = (dict(leaves(language.table(c))) for c in (language.SOURCE, code))
+    alike = {re.sub(r"\{.*?\}", "", text) for key, text in source.items() if other[key] == text}
+    same_in_german = {"Tour"}
+    assert not {text for text in alike if re.search("[A-Za-z]{4}", text)} - same_in_german
+
+
+def test_every_word_that_is_asked_for_is_there_and_none_is_left_over() -> None:
+    asked = set()
+    for tree in TREES.values():
+        for node in ast.walk(tree):
+            match node:
+                case ast.Attribute(ast.Name("words"), attr) if attr.isupper():
+                    asked.add(attr)
+    there = {name.upper() for name in language.table(language.SOURCE)["words"]}
+    assert asked - set(vars(words)) == there
+
+
+def constants(tree: ast.AST) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+
+
+def test_texts_in_the_tables_are_what_the_program_says() -> None:
+    said = {text for tree in TREES.values() for text in constants(tree)}
+    texts = set(language.table(language.SOURCE)["texts"].values())
+    assert texts <= said
+
+
+def test_texts_of_scenes_are_in_the_tables() -> None:
+    """Templates, labels of handles and of axes."""
+    texts = set(language.table(language.SOURCE)["texts"].values())
+    wanted = {"Text": 1, "Handle": 2, "Curve": 2}
+    for path, tree in TREES.items():
+        for node in ast.walk(tree):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name)):
+                continue
+            if node.func.id not in wanted or (node.func.id == "Curve" and "draw" in path.parts):
+                continue
+            for argument in node.args[: wanted[node.func.id]]:
+                if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
+                    name = node.func.id == "Handle" and argument is node.args[0]
+                    assert name or argument.value in texts, f"{path}: {argument.value!r}"
+
+
+def test_no_word_is_taken_at_import() -> None:
+    """The language can change at any moment."""
+    for path, tree in TREES.items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module == "sandbox.words.words":
+                names = [alias.name for alias in node.names]
+                assert all(name in vars(words) for name in names), f"{path}: {names}"
+            if isinstance(node, ast.FunctionDef):
+                for default in [*node.args.defaults, *node.args.kw_defaults]:
+                    for part in ast.walk(default) if default is not None else ():
+                        taken = isinstance(part, ast.Attribute) and part.attr.isupper()
+                        base = getattr(part, "value", None)
+                        assert not (taken and isinstance(base, ast.Name) and base.id == "words"), (
+                            f"{path}: default of {node.name}"
+                        )
+
+
+@pytest.mark.parametrize("name", registry.names())
+def test_scenes_and_their_parameters_are_in_the_tables(name: str) -> None:
+    scene = registry.get(name)
+    english = language.table(language.SOURCE)
+    assert english["scenes"][name]["title"] == scene.title
+    assert english["scenes"][name]["question"] == scene.question
+    assert english["scenes"][name]["about"] == scene.about
+    for parameter in scene.parameters:
+        assert parameter.name in english["parameters"]
+        assert words.parameter_help(name, parameter.name) == parameter.help
+        if re.fullmatch("[a-z]{3,}", parameter.unit):
+            assert parameter.unit in english["units"]
+
+
+def test_no_scene_or_parameter_in_the_tables_is_gone() -> None:
+    english = language.table(language.SOURCE)
+    parameters = {p.name for name in registry.names() for p in registry.get(name).parameters}
+    assert set(english["scenes"]) == set(registry.names())
+    assert set(english["parameters"]) == parameters
+    assert set(english["parameter_help"]) <= parameters
+
+
+def test_words_are_looked_up_in_the_present_language() -> None:
+    assert words.PAUSED == "paused"
+    language.use("de")
+    assert words.PAUSED == "angehalten"
+    assert words.PACKINGS["mixed"] == "gemischt"
+    assert words.PACKINGS.get("unknown", "unknown") == "unknown"
+    assert next(iter(words.VIEWS)) == "kind"
+    assert words.title("hopper", "Hopper") == "Trichter"
+    assert words.title("hopper", "My own hopper") == "My own hopper"
+    assert words.title("unknown") == ""
+    assert words.parameter_name("not_in_any_table") == "not in any table"
+    with pytest.raises(AttributeError, match="NO_SUCH_WORD"):
+        words.NO_SUCH_WORD  # noqa: B018
+
+
+def test_texts_are_said_in_the_present_language() -> None:
+    inner = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=1.44)
+    outer = Text("{clogged}, held by an arch of {grains} grains", clogged=inner, grains=7)
+    plain = "clogged: 1.4 diameters of stroke, nothing left, held by an arch of 7 grains"
+    assert outer == plain
+    assert words.say(outer) == plain
+    language.use("de")
+    assert words.say(outer) == (
+        "verstopft: 1,4 Durchmesser Weg, nichts kam heraus, gehalten von einem Bogen aus 7 Körnern"
+    )
+    assert words.say("stroke [R]") == "Weg [R]"
+    assert words.say("nobody translated this") == "nobody translated this"
+    assert words.say(Text("{count} of them", count=-2.5)) == "−2,5 of them"
+    label = Text("force on the {label} [k R]", label="piston")
+    assert words.say(label) == "Kraft: Kolben [k R]"
+
+
+def test_numbers_are_written_as_the_language_does() -> None:
+    assert (number(-1.25, 2), percent(0.004)) == ("−1.25", "0.5 %")
+    language.use("de")
+    assert (number(-1.25, 2), percent(0.004)) == ("−1,25", "0,5 %")
+
+
+def test_an_error_keeps_its_text() -> None:
+    text = Text("{label}: end of travel", label="piston")
+    assert message(InputError(text)) is text
+    assert message(ValueError()) == ""
+    assert message(OSError(2, "no such file")) == "[Errno 2] no such file"
+
+
+@pytest.mark.parametrize(
+    ("variables", "code"),
+    [
+        ({"LANG": "de_DE.UTF-8"}, "de"),
+        ({"LANG": "de_AT"}, "de"),
+        ({"LANG": "de_DE", "LC_ALL": "en_GB.UTF-8"}, "en"),
+        ({"LANG": "fr_FR.UTF-8"}, "en"),
+        ({"LANG": "German_Germany.1252"}, "de"),
+        ({"LANG": "C"}, "en"),
+    ],
+    ids=str,
+)
+def test_language_of_the_environment(
+    variables: dict[str, str], code: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    assert language.of_environment() == code
+
+
+def test_unknown_language_is_a_plain_mistake() -> None:
+    with pytest.raises(InputError, match="choose en, de"):
+        language.use("tlh")
+    assert language.after("de") == "en"
+
+
+@pytest.mark.parametrize("name", registry.names())
+def test_what_a_running_scene_says_is_translated(name: str) -> None:
+    """Labels, notices and events of the first increments."""
+    settings: dict[str, object] = {"friction": 0.0} if name == "hopper" else {}
+    session = Session(name, "mixed", 1, settings)
+    session.build()
+    session.submit(Protocol(True))
+    for _ in range(12):
+        while not session.advance(2000) and not session.idle:
+            pass
+    frame = session.frame()
+    said = [frame.curve_label, frame.stroke_label, *frame.notices]
+    said += [handle.label for handle in frame.handles] + [event.text for event in frame.events]
+    language.use("de")
+    untranslated = [text for text in said if words.say(text) == text]
+    assert untranslated == []
+    assert words.title(frame.scene, frame.title) != frame.title
