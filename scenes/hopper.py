@@ -49,7 +49,7 @@ DIAMETER = 2.0  # of a large grain [R]
 class Hopper(Scene):
     name = "hopper"
     title = "Hopper"
-    question = "Why does this hopper clog, and that one not?"
+    question = "Why does this hopper lock, and that one not?"
     about = "A piston pushes grains through an orifice a few grains wide. Watch arches form, carry force, and break."
     default_steps = 440
     parameters = (

@@ -39,7 +39,7 @@ class Intruder(Scene):
     question = "How hard is it to drag a disc through grains that cannot get out of the way?"
     about = (
         "A closed box of grains and a disc in your hand. "
-        "Regular grains lock into force chains; a few auxetic ones let them break."
+        "Among regular grains the hand is soon locked; among auxetic ones it goes on."
     )
     default_steps = 400
     parameters = (
