@@ -1,7 +1,7 @@
 """Guided tours: what each step sets up, and what has to happen for it to be done. The words are in the language tables.
 
-A tour is data, ``sandbox/lessons/tours.toml``: for every scene a list of steps. A step may begin the scene anew, in one packing or
-several and with other settings, and choose a view; then it waits for what a person does.
+A tour is data, ``sandbox/lessons/tours.toml``: for every scene a list of steps. A step may begin the scene anew, in one
+packing or several and with other settings, and choose a view; then it waits for what a person does.
 """
 
 from __future__ import annotations
