@@ -20,16 +20,9 @@ from sandbox.session.editing import edited
 from sandbox.session.frame import Frame
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
-from sandbox.session.reading import (
-    LOCKED_AFTER,
-    follow_drive,
-    locked,
-    read_off,
-    tell_what_stopped,
-)
 from sandbox.session.take_frame import Shown, take
-from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
-from scenes.text import message
+from scenes.scene import Check, Earlier, Holding, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.text import Text, message
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
@@ -169,9 +162,9 @@ class Run:
         self._course.touched = max(self._course.touched - 1, 0) if unfinished else 0
         self._last = increment
         earlier = None if before is None else Earlier(before, self.setup.packing.label)
-        tell_what_stopped(self._course, self.setup, increment)
+        self._course.tell_what_stopped(self.setup, increment)
         left = self._remove_those_gone()
-        follow_drive(self._course, self.setup, increment)
+        self._course.follow(self.setup, increment)
         self._record(increment)
         if left:
             row, course = self.history[-1], self._course
@@ -201,9 +194,8 @@ class Run:
         return True
 
     def _record(self, increment: Increment) -> None:
-        known = self.scene.accuracy
-        row = read_off(self._course, self.setup, increment, len(self.history), known)
-        self.history.append(row)
+        number, known = len(self.history), self.scene.accuracy
+        self.history.append(self._course.read_off(self.setup, increment, number, known))
 
     @property
     def _still(self) -> bool:
@@ -236,7 +228,7 @@ class Run:
         )
         remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
         if self.locked:
-            remarks = locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
+            remarks = _locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
         course.remarks = remarks
         row = self.history[-1]
         for kind, text in remarks.happening.items():
@@ -355,7 +347,7 @@ class Run:
     @property
     def locked(self) -> bool:
         """True if all the strength of the hand moves nothing."""
-        return self._course.stuck >= LOCKED_AFTER
+        return self._course.locked
 
     @property
     def how_locked(self) -> str:
@@ -405,3 +397,10 @@ class Run:
         )
         claims = self.scene.general_checks if self._course.edited else self.scene.checks
         return claims(self.setup, track)
+
+
+def _locked(remarks: Remarks, holding: Holding, strength: float) -> Remarks:
+    """What the scene has said, and that all the ``strength`` of the hand [k R] moves nothing, because of what holds."""
+    text = Text("locked at {strength:g} k R: {holding}", strength=strength, holding=holding.text)
+    grains = remarks.highlight if holding.grains is None else holding.grains
+    return Remarks((text,), grains, {**remarks.happening, "locked": text})
