@@ -216,6 +216,11 @@ class Friction:
         self._keys: Indices = np.zeros(0, dtype=np.int64)
         self._slips: Floats = np.zeros(0)
 
+    @classmethod
+    def of(cls, coefficient: float, grains: int) -> Friction | None:
+        """The same, and for a coefficient of 0 None."""
+        return None if coefficient == 0.0 else cls(coefficient, grains)
+
     def copy(self) -> Friction:
         """An independent copy, equal to the last bit."""
         twin = Friction(self.coefficient, 0)

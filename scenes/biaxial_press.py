@@ -29,6 +29,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -97,7 +98,7 @@ class BiaxialPress(Scene):
             handles=(Handle("lid", "lid", (0.0, -1.0), 0.3 * half),),
             bounds=(-brim - margin, -2.0 * margin, brim + margin, 2.0 * half + 2.0 * LID),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(values, len(packed)),
             curve=Curve(
                 "less area [%]",
                 "pressure [k]",
@@ -180,7 +181,7 @@ def _balance(setup: Setup) -> Check:
     contacts = observables.body_contacts(setup.packing, primitives)
     reactions = observables.reactions(contacts, owner, setup.world.placement())
     name = "the floor bears what the lid presses"
-    if setup.friction > 0.0:
+    if setup.friction is not None:
         return Check(name, None, "with friction its faces bear tangential forces too")
     forces = np.concatenate([pairs.normal_force, contacts.normal_force])
     scale = max(float(np.mean(forces)) if len(forces) else 0.0, setup.solver.force_floor)

@@ -31,6 +31,7 @@ from scenes.scene import (
     Track,
     Values,
     below_height,
+    friction,
     hand,
     solver,
 )
@@ -121,7 +122,7 @@ class GrainRow(Scene):
                 (half_width, 2.0 + LIFT),
                 (-half_width, 2.0 + LIFT),
             ],
-            friction=float(values["friction"]),
+            friction=friction(values, len(x)),
             curve=Curve(
                 "compression [% of a diameter]",
                 "sideways force on the walls [k R]",
@@ -231,7 +232,7 @@ def _walls_balance(setup: Setup) -> Check:
     """Without friction nothing else acts sideways."""
     name = "both walls feel the same force"
     left, right = _wall_forces(setup)
-    if setup.friction > 0.0:
+    if setup.friction is not None:
         return Check(name, None, "with friction floor and piston hold some of it")
     allowed = len(setup.packing) * setup.solver.tolerance * max(left, right, 1.0)
     return Check(name, abs(left - right) <= allowed, f"{left:.4g} and {right:.4g} k R")
@@ -257,7 +258,7 @@ def _poisson_effect(setup: Setup, track: Track) -> Check:
     strain = 0.01 * float(track.stroke[first])
     count = len(setup.packing)
     gapless = setup.outline[1][0] <= count * (1.0 + 1e-12)
-    if np.any(nu != nu[0]) or not gapless or setup.friction > 0.0:
+    if np.any(nu != nu[0]) or not gapless or setup.friction is not None:
         return Check(name, None, "for rows of one kind without gaps and friction")
     expected = expected_slope(float(nu[0]), float(setup.packing.contact_stiffness[0]), count)
     slope = float(track.force[first]) / (2.0 * strain)

@@ -36,6 +36,7 @@ from scenes.scene import (
     Setup,
     Track,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -163,7 +164,7 @@ class GravityHopper(Scene):
             bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
             outline=[*left, *right],
             outlet=shape.outlet(-DROP, beside=False),  # they are seen to sink on
-            friction=float(values["friction"]),
+            friction=friction(values, len(packed)),
             gravity=gravity,
             drag=drag,
             curve=Curve("increments", "grains that have left", None, None),
@@ -247,10 +248,10 @@ def _nothing_hangs(setup: Setup, track: Track) -> Check:
     if not loose.any():
         return Check(name, True, f"all of {len(loose)} grains touch something")
     # The shaken funnel lets grains go at any time: those sink, or land, in one more increment.
-    friction = Friction(setup.friction, len(loose)) if setup.friction > 0.0 else None
-    further = Quasistatic(
-        setup.packing.copy(), setup.world, setup.solver, friction, setup.gravity, drag=setup.drag
-    )
+    friction = None
+    if setup.friction is not None:
+        friction = Friction(setup.friction.coefficient, len(loose))
+    further = Quasistatic(replace(setup, packing=setup.packing.copy(), friction=friction))
     further.begin({})
     while further.relax(1_000) is None:
         pass

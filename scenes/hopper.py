@@ -28,6 +28,7 @@ from scenes.scene import (
     Setup,
     Values,
     below_height,
+    friction,
     hand,
     recipe,
     solver,
@@ -153,7 +154,7 @@ class Hopper(Scene):
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
             outlet=shape.outlet(-LEFT_BEHIND, beside=True),
-            friction=float(values["friction"]),
+            friction=friction(values, len(packed)),
         )
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:

@@ -21,6 +21,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -104,21 +105,22 @@ class Intruder(Scene):
                 ),
             ]
         )
+        packed = pack(
+            grains,
+            seed=seed,
+            outline=outline,
+            world=world,
+            packing_fraction=fraction,
+            progress=progress,
+        )
         return Setup(
-            packing=pack(
-                grains,
-                seed=seed,
-                outline=outline,
-                world=world,
-                packing_fraction=fraction,
-                progress=progress,
-            ),
+            packing=packed,
             world=world,
             solver=solver(values),
             handles=(Handle("intruder", "intruder", (1.0, 0.0), radius),),
             bounds=(-WALL, -WALL, width + WALL, height + WALL),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(values, len(packed)),
         )
 
     def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:

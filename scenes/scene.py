@@ -20,8 +20,9 @@ from core.friction import Friction
 from core.generate import KINDS, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
-from core.rigid import Point, RigidWorld
+from core.rigid import Point
 from core.settings import MACHINE, Settings
+from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
 from scenes.parameter import Parameter, Value
@@ -77,31 +78,20 @@ class Curve:
     force: Callable[[Packing, Increment], float] | None  # None: the number of grains that have left
 
 
-@dataclass
-class Setup:
-    """A scene that is built: the packing, the bodies, how to relax, and what a person can do with it."""
+@dataclass(kw_only=True)
+class Setup(System):
+    """A scene that is built: the system that an engine works on, and what a person can do with it."""
 
-    packing: Packing
-    world: RigidWorld
-    solver: Settings
     handles: tuple[Handle, ...]
     bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
-    friction_state: Friction | None = None  # what contacts remember at the start; None: nothing
-    friction: float = 0.0  # Coulomb coefficient, with bodies too; 0: the term does not exist
-    gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
     box_handle: Callable[[PeriodicBox], Point] | None = (
         None  # where that handle is; None: the corner
     )
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
-    follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
-    relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
     reach: Callable[[Packing, str, Point], Point] | None = None  # where a handle can go, of a wish
-    drag: float = (
-        0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
-    )
 
 
 @dataclass(frozen=True)
@@ -257,7 +247,7 @@ class Scene(ABC):
         if "contact_stiffness" in changed:
             packing.contact_stiffness = np.full(len(packing), float(values["contact_stiffness"]))
         if "friction" in changed:
-            setup.friction = float(values["friction"])
+            setup.rub(float(values["friction"]))
         if not changed.isdisjoint(p.name for p in SOLVER):
             setup.solver = replace(
                 setup.solver,
@@ -393,6 +383,11 @@ def solver(values: Values) -> Settings:
         max_iterations=int(values["max_iterations"]),
         hand_strength=hand_strength(values),
     )
+
+
+def friction(values: Values, grains: int) -> Friction | None:
+    """That of so many grains as ``values`` call for; None without any."""
+    return Friction.of(float(values["friction"]), grains)
 
 
 def hand_strength(values: Values) -> float:

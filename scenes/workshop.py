@@ -18,6 +18,7 @@ from scenes.scene import (
     Scene,
     Setup,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -77,21 +78,22 @@ class Workshop(Scene):
             held=True,
         )
         world = RigidWorld([wall("walls", outline, WALL, closed=True), disc])
+        packed = pack(
+            recipe(values, packing),
+            seed=seed,
+            outline=outline,
+            world=world,
+            count=int(values["grains"]),
+            progress=progress,
+        )
         return Setup(
-            packing=pack(
-                recipe(values, packing),
-                seed=seed,
-                outline=outline,
-                world=world,
-                count=int(values["grains"]),
-                progress=progress,
-            ),
+            packing=packed,
             world=world,
             solver=solver(values),
             handles=(Handle("intruder", "disc", (1.0, 0.0), radius),),
             bounds=(-WALL, -WALL, width + WALL, height + WALL),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(values, len(packed)),
         )
 
     def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:

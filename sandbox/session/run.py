@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from core.errors import InputError
-from core.friction import Friction
 from core.hand import CELL
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
@@ -39,21 +38,7 @@ class Run:
         self.scene, self.values, self.setup = scene, values, setup
         self._course = Course(drive.direction, len(setup.packing))
         self.packing_kind, self.seed = packing_kind, seed
-        friction = None
-        if setup.friction > 0.0:
-            kept = setup.friction_state
-            friction = Friction(0.5, len(setup.packing)) if kept is None else kept.copy()
-            friction.coefficient = setup.friction
-        self.engine = Quasistatic(
-            setup.packing,
-            setup.world,
-            setup.solver,
-            friction,
-            setup.gravity,
-            follow=setup.follow,
-            drag=setup.drag,
-            relaxes=setup.relaxes,
-        )
+        self.engine = Quasistatic(setup)
         self.history = History()
         self.checkpoints = Checkpoints()
         self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
@@ -85,10 +70,10 @@ class Run:
 
         Raises InputError for a step that is too long, and changes nothing then.
         """
-        setup, before = self.setup, self.present()
+        before = self.present()
         try:
-            self.scene.adjust(setup, values, changed)
-            self.engine.adjust(setup.solver, setup.friction, setup.gravity, setup.drag)
+            self.scene.adjust(self.setup, values, changed)
+            self.engine.look_again()
         except InputError:
             self.restore(before)
             raise
@@ -104,7 +89,7 @@ class Run:
         """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
         made = edited(self.setup, self.values, command, self._course.next_label)
         before = self._before_edit or (self.present(), self._course.copy())
-        course, friction = self._course, self.engine.friction
+        course, friction = self._course, self.setup.friction
         if friction is not None:
             friction.rearrange(made.source)
             friction.forget_primitives(*made.forgotten)
@@ -113,7 +98,6 @@ class Run:
         course.edited, course.moving = True, self.setup.drag > 0.0
         course.remarks = Remarks()
         course.notices.clear()
-        self.setup.packing = made.packing
         self.setup.world.redraw(made.walls)
         self.engine.take_over(made.packing)
         pairs, bodies = self.engine.contacts()
@@ -242,11 +226,10 @@ class Run:
         """How many grains have left by the outlet in this increment."""
         if self.setup.outlet is None:
             return 0
-        gone = self.setup.outlet.gone(self.engine.packing)
+        gone = self.setup.outlet.gone(self.setup.packing)
         if gone.any():
             self._course.out += int(gone.sum())
             self.engine.remove(gone)
-            self.setup.packing = self.engine.packing
             pairs, bodies = self.engine.contacts()
             unbalanced = self._last.unbalanced[~gone]
             self._last = replace(
@@ -295,14 +278,10 @@ class Run:
 
     def restore(self, kept: Checkpoint) -> None:
         """Be as at that checkpoint; what is kept of the past and the future of that state stays."""
-        setup, engine = self.setup, self.engine
-        engine.restore(kept.engine)
-        setup.packing, setup.solver = engine.packing, engine.settings
-        setup.gravity, setup.drag = engine.gravity, engine.drag
-        setup.friction = 0.0 if engine.friction is None else engine.friction.coefficient
+        self.engine.restore(kept.engine)
         self._course, self.values = kept.course.copy(), kept.values
         self.history = kept.history.upto(kept.length)
-        pairs, bodies = engine.contacts()
+        pairs, bodies = self.engine.contacts()
         self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
         self.checkpoints.travel(kept)
         self._kept, self._before_edit = kept, None
@@ -338,8 +317,8 @@ class Run:
         """Hash of every bit of the packing, of where the bodies are, and of what frictional contacts remember."""
         placement = self.setup.world.placement().tobytes()
         digest = hashlib.sha256(self.setup.packing.hash().encode() + placement)
-        if self.engine.friction is not None:
-            digest.update(self.engine.friction.hash().encode())
+        if self.setup.friction is not None:
+            digest.update(self.setup.friction.hash().encode())
         for wall in self.setup.world.drawn:
             digest.update(wall.primitives().tobytes())
         return digest.hexdigest()

@@ -98,7 +98,8 @@ class Session:
         if asked.file is not None:
             put_into(setup, asked.file)
         bodies = keep_bodies(setup.world)
-        start = Start(setup.packing.copy(), setup, bodies, asked)
+        friction = None if setup.friction is None else setup.friction.copy()
+        start = Start(setup.packing.copy(), friction, setup, bodies, asked)
         self._start, self._run = start, _first_run(asked, setup)
         report("ready", 1.0)
 
@@ -177,6 +178,7 @@ class Session:
         start = self._start
         assert start is not None
         start.setup.packing = start.packing.copy()
+        start.setup.friction = None if start.friction is None else start.friction.copy()
         place_bodies(start.setup.world, start.bodies)
         changed = {
             name for name, value in self.settings.items() if value != start.asked.settings[name]

@@ -83,7 +83,7 @@ def take(view: Shown) -> Frame:
         notices=(*view.course.notices, *view.course.remarks.notices),
         curve_stroke=view.history.curve[0],
         curve_force=view.history.curve[1],
-        spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
+        spin=None if view.setup.friction is None else view.setup.friction.spin.copy(),
         curve_label=Text("force on the {label} [k R]", label=view.drive.label)
         if curve is None
         else curve.force_label,

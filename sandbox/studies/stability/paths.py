@@ -131,7 +131,7 @@ def _cycle(watch: Watch, engine: Quasistatic, look: bool = True) -> None:
 def _cycled(kind: str) -> Act:
     def act(watch: Watch) -> None:
         rig = rigs.cell(rigs.materials(kind, 0.8, 50.0), fraction=0.9)
-        rig.engine.settings = rigs.settings(step=0.01, tolerance=1e-6)
+        rig.engine.system.solver = rigs.settings(step=0.01, tolerance=1e-6)
         rig.rest(watch)
         box = rig.packing.box
         assert box is not None
@@ -153,7 +153,7 @@ def _cycled(kind: str) -> Act:
 def _starved(kind: str, most: int) -> Act:
     def act(watch: Watch) -> None:
         rig = rigs.cell(rigs.materials(kind, 0.8, 50.0), fraction=0.9)
-        rig.engine.settings = rigs.settings(tolerance=1e-9, max_iterations=most)
+        rig.engine.system.solver = rigs.settings(tolerance=1e-9, max_iterations=most)
         rig.rest(watch)
         rig.squeeze(watch, 0.9)
         watch.expect(
@@ -166,7 +166,7 @@ def _starved(kind: str, most: int) -> Act:
 def _tolerance(tolerance: float) -> Act:
     def act(watch: Watch) -> None:
         rig = rigs.cell(rigs.materials("mixed", 0.8, 50.0))
-        rig.engine.settings = rigs.settings(tolerance=tolerance, max_iterations=20_000)
+        rig.engine.system.solver = rigs.settings(tolerance=tolerance, max_iterations=20_000)
         rig.rest(watch)
         rig.squeeze(watch, 0.99)
 

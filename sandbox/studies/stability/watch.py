@@ -211,13 +211,17 @@ def reported(increment: Increment) -> list[Look]:
 def balance(engine: Quasistatic, increment: Increment) -> list[Look]:
     """Newton's third law and the symmetry of the stress, to within what the reported residual leaves open."""
     report = increment.report
-    if report.reason is not StopReason.CONVERGED or engine.drag > 0.0 or report.residual == 0.0:
+    if (
+        report.reason is not StopReason.CONVERGED
+        or engine.system.drag > 0.0
+        or report.residual == 0.0
+    ):
         return []
     packing, count = engine.packing, len(engine.packing)
     largest = report.residual * report.mean_contact_force
     pairs, bodies = increment.grain_contacts, increment.body_contacts
     areas = packing.rest_radius**2
-    gravity = engine.gravity or (0.0, 0.0)
+    gravity = engine.system.gravity or (0.0, 0.0)
     magnitude = float(np.abs([*pairs.fx, *pairs.fy, *bodies.fx, *bodies.fy]).sum())
     magnitude += float(areas.sum()) * math.hypot(*gravity)
     allowed = count * largest * (1.0 + ROUNDING) + ROUNDING * magnitude
