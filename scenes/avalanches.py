@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.avalanches import force_changes, participation, stress_drops, weights
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
@@ -24,7 +24,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

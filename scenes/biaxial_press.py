@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from core import observables
-from core.generate import Recipe, pack
+from core.generate import Progress, Recipe, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.parameter import Parameter
@@ -24,7 +24,6 @@ from scenes.scene import (
     Check,
     Curve,
     Handle,
-    Progress,
     Scene,
     Setup,
     Track,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core import observables
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
@@ -22,7 +22,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

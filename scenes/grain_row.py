@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from core import observables
-from core.generate import Recipe
+from core.generate import Progress, Recipe
 from core.packing import Packing
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
@@ -24,7 +24,6 @@ from scenes.scene import (
     Curve,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.friction import Friction
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing
 from core.quasistatic import Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
@@ -30,7 +30,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.arches import arch
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
@@ -22,7 +22,6 @@ from scenes.scene import (
     Holding,
     Latest,
     Outlet,
-    Progress,
     Remarks,
     Scene,
     Setup,

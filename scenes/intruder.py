@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
@@ -16,7 +16,6 @@ from scenes.scene import (
     SOLVER,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
-from core.generate import KINDS, Recipe, inside
+from core.generate import KINDS, Progress, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point
@@ -29,7 +29,6 @@ from scenes.parameter import Parameter, Value
 from scenes.text import Text
 
 Values = Mapping[str, Value]
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.errors import InputError
+from core.generate import Progress
 from core.material import area_modulus
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
@@ -23,7 +24,6 @@ from scenes.scene import (
     Check,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from core.exact import approximate_distance, contact_distance, parallel_expansion
+from core.generate import Progress
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
@@ -21,7 +22,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,

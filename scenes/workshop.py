@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -14,7 +14,6 @@ from scenes.scene import (
     MATERIAL,
     SOLVER,
     Handle,
-    Progress,
     Scene,
     Setup,
     Values,

@@ -32,7 +32,7 @@ from sandbox.session.commands import (
     check,
 )
 from sandbox.session.frame import Frame
-from sandbox.session.history import History
+from sandbox.session.history import History, Row
 from sandbox.session.log import Log
 from sandbox.session.run import Run
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
@@ -47,6 +47,10 @@ UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
 JOURNEYS = (Reset, Recall, Undo, Redo)
 
 Tell = Callable[[str, float], None]  # what is being built, and the share of it that is done
+
+
+def _go_on() -> None:
+    """Nobody wants to break the work off."""
 
 
 class Session:
@@ -264,13 +268,22 @@ class Session:
         self._finished += 1
         return True
 
-    def slices(self, iterations: int) -> Iterator[bool]:
+    def slices(self, iterations: int, check: Callable[[], None] = _go_on) -> Iterator[bool]:
         """Work, at most so many force evaluations at a time, until nothing is left to do; True where an increment was finished.
 
-        Whoever drives a session, a film, a replay, a study, looks at it in between.
+        Whoever drives a session, a film, a replay, a study, looks at it in between. ``check`` is called before each slice: what
+        it raises breaks the work off.
         """
+        check()
         while (finished := self.advance(iterations)) or not self.idle:
             yield finished
+            check()
+
+    def increments(self, iterations: int, check: Callable[[], None] = _go_on) -> Iterator[Row]:
+        """The same, for who looks at finished increments only: the newest row after each."""
+        for finished in self.slices(iterations, check):
+            if finished:
+                yield self.history[-1]
 
     # What can be seen.
 
