@@ -32,10 +32,10 @@ class Run:
     """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
 
     def __init__(
-        self, scene: Scene, values: Values, packing_kind: str, seed: int, setup: Setup
+        self, scene: Scene, settings: Values, packing_kind: str, seed: int, setup: Setup
     ) -> None:
         drive = setup.handles[0]
-        self.scene, self.values, self.setup = scene, values, setup
+        self.scene, self.settings, self.setup = scene, settings, setup
         self._course = Course(drive.direction, len(setup.packing))
         self.packing_kind, self.seed = packing_kind, seed
         self.engine = Quasistatic(setup)
@@ -50,7 +50,7 @@ class Run:
             last = self.engine.relax(1_000)
         self._last = last
         self._course.moving = setup.drag > 0.0
-        self._record(last)
+        self._add_row(last)
         self._remark(None, None, 0)
         self._keep()
 
@@ -59,20 +59,20 @@ class Run:
     @property
     def hands(self) -> Hands:
         """What holds its bodies and says where they go."""
-        return Hands(self.scene, self.values, self.setup, self._course)
+        return Hands(self.scene, self.settings, self.setup, self._course)
 
     def say(self, notice: str) -> None:
         """Plain words for the person at the window, until something else is to be said."""
         self._course.notices = [notice]
 
-    def adjust(self, values: Values, changed: frozenset[str]) -> None:
-        """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
+    def adjust(self, settings: Values, changed: frozenset[str]) -> None:
+        """Live parameters, those in ``changed``, become what ``settings`` say; then one increment relaxes where things stand.
 
         Raises InputError for a step that is too long, and changes nothing then.
         """
         before = self.present()
         try:
-            self.scene.adjust(self.setup, values, changed)
+            self.scene.adjust(self.setup, settings, changed)
             self.engine.look_again()
         except InputError:
             self.restore(before)
@@ -80,14 +80,14 @@ class Run:
         self._course.blocked.clear()
         self._course.stuck = 0
         if self._course.script is not None:
-            place = self.scene.place_in_drive(self._course.script, self.values, values)
+            place = self.scene.place_in_drive(self._course.script, self.settings, settings)
             self._course.script = place
-        self.values = values
+        self.settings = settings
         self.touched()
 
     def edit(self, command: Edit) -> None:
         """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
-        made = edited(self.setup, self.values, command, self._course.next_label)
+        made = edited(self.setup, self.settings, command, self._course.next_label)
         before = self._before_edit or (self.present(), self._course.copy())
         course, friction = self._course, self.setup.friction
         if friction is not None:
@@ -149,7 +149,7 @@ class Run:
         self._course.tell_what_stopped(self.setup, increment)
         left = self._remove_those_gone()
         self._course.follow(self.setup, increment)
-        self._record(increment)
+        self._add_row(increment)
         if left:
             row, course = self.history[-1], self._course
             course.waited = row.stroke - course.last_exit[0]
@@ -177,7 +177,7 @@ class Run:
         self.say(TOO_TIGHT)
         return True
 
-    def _record(self, increment: Increment) -> None:
+    def _add_row(self, increment: Increment) -> None:
         number, known = len(self.history), self.scene.accuracy
         self.history.append(self._course.read_off(self.setup, increment, number, known))
 
@@ -210,7 +210,7 @@ class Run:
             course.waited,
             course.initial,
         )
-        remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
+        remarks, going_on = self.scene.remarks(self.setup, self.settings, latest), course.remarks
         if self.locked:
             remarks = _locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
         course.remarks = remarks
@@ -273,13 +273,13 @@ class Run:
             last=bare(self._last),
             history=self.history,
             length=len(self.history),
-            values=self.values,
+            settings=self.settings,
         )
 
     def restore(self, kept: Checkpoint) -> None:
         """Be as at that checkpoint; what is kept of the past and the future of that state stays."""
         self.engine.restore(kept.engine)
-        self._course, self.values = kept.course.copy(), kept.values
+        self._course, self.settings = kept.course.copy(), kept.settings
         self.history = kept.history.upto(kept.length)
         pairs, bodies = self.engine.contacts()
         self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
@@ -297,7 +297,7 @@ class Run:
         return take(
             Shown(
                 scene=self.scene,
-                settings=self.values,
+                settings=self.settings,
                 packing_kind=self.packing_kind,
                 seed=self.seed,
                 setup=self.setup,

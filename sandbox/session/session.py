@@ -305,7 +305,7 @@ class Session:
     @property
     def settings(self) -> Values:
         """All parameters as they are now."""
-        return self._first.settings if self._run is None else self._run.values
+        return self._first.settings if self._run is None else self._run.settings
 
     @property
     def history(self) -> History:
@@ -332,7 +332,7 @@ class Session:
         kept = self.run.settled
         scene, file = self.scene.name, self.file
         worth = bool(self._commands) or file is not None
-        return Made(scene, self.packing, self.seed, kept.values, kept.engine, file, worth)
+        return Made(scene, self.packing, self.seed, kept.settings, kept.engine, file, worth)
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""

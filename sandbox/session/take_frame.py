@@ -40,22 +40,22 @@ class Shown:
     can_redo: bool
 
 
-def take(view: Shown) -> Frame:
-    """A snapshot of ``view`` that shares nothing with it."""
-    packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
-    under_way = view.engine.progress()
-    last = view.last.report
-    highlight = view.course.remarks.highlight
+def take(shown: Shown) -> Frame:
+    """A snapshot of ``shown`` that shares nothing with it."""
+    packing, box, curve = shown.setup.packing, shown.setup.packing.box, shown.setup.curve
+    under_way = shown.engine.progress()
+    last = shown.last.report
+    highlight = shown.course.remarks.highlight
     state = packing.state.copy()
     state[:2] = packing.folded()
-    primitives, _ = view.setup.world.primitives()
-    stress = grain_stress(packing, view.last.grain_contacts, view.last.body_contacts, primitives)
+    primitives, _ = shown.setup.world.primitives()
+    stress = grain_stress(packing, shown.last.grain_contacts, shown.last.body_contacts, primitives)
     return Frame(
-        scene=view.scene.name,
-        title=view.scene.title,
-        packing=view.packing_kind,
-        seed=view.seed,
-        increment=len(view.history) - 1,
+        scene=shown.scene.name,
+        title=shown.scene.title,
+        packing=shown.packing_kind,
+        seed=shown.seed,
+        increment=len(shown.history) - 1,
         x=state[0],
         y=state[1],
         p=state[2],
@@ -66,40 +66,40 @@ def take(view: Shown) -> Frame:
         label=packing.label.copy(),
         pressure=stress[0],
         stress_difference=2.0 * np.hypot(stress[1], stress[2]),
-        motion=view.engine.own_motion(),
-        contacts=_contact_lines(view, packing, primitives, state[0], state[1]),
-        bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
-        handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
-        bounds=view.setup.bounds,
-        stroke=view.course.stroke,
-        grains_out=view.course.out,
+        motion=shown.engine.own_motion(),
+        contacts=_contact_lines(shown, packing, primitives, state[0], state[1]),
+        bodies=tuple(_shape(body, box) for body in shown.setup.world.bodies),
+        handles=tuple(_handle_state(shown, handle) for handle in shown.setup.handles),
+        bounds=shown.setup.bounds,
+        stroke=shown.course.stroke,
+        grains_out=shown.course.out,
         energy=last.energy,
         residual=last.residual,
-        tolerance=view.setup.solver.tolerance,
+        tolerance=shown.setup.solver.tolerance,
         iterations=(last if under_way is None else under_way).iterations,
         stop_reason=str(last.reason),
         busy=under_way is not None,
-        protocol=view.course.script is not None,
-        notices=(*view.course.notices, *view.course.remarks.notices),
-        curve_stroke=view.history.curve[0],
-        curve_force=view.history.curve[1],
-        spin=None if view.setup.friction is None else view.setup.friction.spin.copy(),
-        curve_label=Text("force on the {label} [k R]", label=view.drive.label)
+        protocol=shown.course.script is not None,
+        notices=(*shown.course.notices, *shown.course.remarks.notices),
+        curve_stroke=shown.history.curve[0],
+        curve_force=shown.history.curve[1],
+        spin=None if shown.setup.friction is None else shown.setup.friction.spin.copy(),
+        curve_label=Text("force on the {label} [k R]", label=shown.drive.label)
         if curve is None
         else curve.force_label,
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
-        hand_limit=view.setup.solver.hand_strength if curve is None else math.inf,
+        hand_limit=shown.setup.solver.hand_strength if curve is None else math.inf,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
-        residual_force=view.last.unbalanced.copy(),
-        force_error=_force_error(view.history),
-        settings=dict(view.settings),
-        first_kept=view.kept[0],
-        last_kept=view.kept[1],
-        can_undo=view.can_undo,
-        can_redo=view.can_redo,
-        events=view.history.events,
-        ahead=_ahead(view),
+        residual_force=shown.last.unbalanced.copy(),
+        force_error=_force_error(shown.history),
+        settings=dict(shown.settings),
+        first_kept=shown.kept[0],
+        last_kept=shown.kept[1],
+        can_undo=shown.can_undo,
+        can_redo=shown.can_redo,
+        events=shown.history.events,
+        ahead=_ahead(shown),
     )
 
 
@@ -109,25 +109,25 @@ def _force_error(history: History) -> float:
     return history[-1].force_error / scale if scale > 0.0 else math.nan
 
 
-def _ahead(view: Shown) -> Ahead | None:
+def _ahead(shown: Shown) -> Ahead | None:
     """What is kept of later increments."""
-    if view.future is None:
+    if shown.future is None:
         return None
-    shown, last = len(view.history), view.kept[1]
-    stroke, force = view.future.curve[:, shown : last + 1]
-    later = tuple(e for e in view.future.events if shown <= e.increment <= last)
+    so_far, last = len(shown.history), shown.kept[1]
+    stroke, force = shown.future.curve[:, so_far : last + 1]
+    later = tuple(e for e in shown.future.events if so_far <= e.increment <= last)
     return Ahead(stroke, force, later)
 
 
 def _contact_lines(
-    view: Shown,
+    shown: Shown,
     packing: Packing,
     primitives: NDArray[np.float64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
 ) -> Contacts:
     """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
-    pairs, bodies = view.last.grain_contacts, view.last.body_contacts
+    pairs, bodies = shown.last.grain_contacts, shown.last.body_contacts
     grain_x, grain_y = x[bodies.grain], y[bodies.grain]
     body_x = bodies.x + grain_x - packing.x[bodies.grain]
     body_y = bodies.y + grain_y - packing.y[bodies.grain]
@@ -147,18 +147,18 @@ def _contact_lines(
     )
 
 
-def _handle_state(view: Shown, handle: Handle) -> HandleState:
-    box = view.setup.packing.box
-    target = view.course.targets.get(handle.body)
+def _handle_state(shown: Shown, handle: Handle) -> HandleState:
+    box = shown.setup.packing.box
+    target = shown.course.targets.get(handle.body)
     if handle.body == "box" and box is not None:
-        at = view.setup.box_handle
+        at = shown.setup.box_handle
         place = (box.width, box.height) if at is None else at(box)
         x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
         return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
-    body = view.setup.world[handle.body]
-    push = view.last.reactions[view.setup.world.index(handle.body), :2]
+    body = shown.setup.world[handle.body]
+    push = shown.last.reactions[shown.setup.world.index(handle.body), :2]
     # The hand's force along its pull, as it is plotted; what goes across is borne by the guide.
-    along = view.course.direction if body.axis is None else body.axis
+    along = shown.course.direction if body.axis is None else body.axis
     fx, fy = -float(np.dot(push, along)) * np.array(along)
     x, target = _nearest_image(body.position[0], target, box)
     return HandleState(
