@@ -105,20 +105,20 @@ class GravityHopper(Scene):
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        return Ingredients(friction=float(values["friction"]) > 0.0, gravity=True)
+    def ingredients(self, settings: Values) -> Ingredients:
+        return Ingredients(friction=float(settings["friction"]) > 0.0, gravity=True)
 
-    def validate(self, values: Values) -> None:
-        Shape(values).check(LEAST_CHANNEL)
+    def validate(self, settings: Values) -> None:
+        Shape(settings).check(LEAST_CHANNEL)
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        shape = Shape(values)
+        shape = Shape(settings)
         half_width, neck, lip = shape.half_width, shape.neck, (shape.lip_x, shape.lip_y)
         top = neck + shape.channel
-        gravity, drag = _pull(values)
-        brim = top + ROOM + half_width * abs(math.tan(math.radians(float(values["tilt"]))))
+        gravity, drag = _pull(settings)
+        brim = top + ROOM + half_width * abs(math.tan(math.radians(float(settings["tilt"]))))
         right: list[Point] = [lip, (half_width, neck), (half_width, brim)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
         full: list[Point] = [
@@ -148,7 +148,7 @@ class GravityHopper(Scene):
         lid = wall("lid", [(half_width, top), (-half_width, top)], WALL)
         gate = wall("gate", [(-lip[0], lip[1]), lip], WALL)
         packed = pack(
-            recipe(values, packing),
+            recipe(settings, packing),
             seed=seed,
             outline=full,
             world=RigidWorld([*walls, lid, gate]),
@@ -158,22 +158,22 @@ class GravityHopper(Scene):
         return Setup(
             packing=packed,
             world=RigidWorld([funnel]),
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("funnel", "funnel", (1.0, 0.0), 3.0),),
             bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
             outline=[*left, *right],
             outlet=shape.outlet(-DROP, beside=False),  # they are seen to sink on
-            friction=friction(values, len(packed)),
+            friction=friction(settings, len(packed)),
             gravity=gravity,
             drag=drag,
             curve=Curve("increments", "grains that have left", None, None),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """Shaking now and then: pauses of ``REST`` increments, then ``TREMBLE`` of shaking."""
         if not len(setup.packing):
             return None
-        amplitude, funnel = float(values["shake"]), setup.world["funnel"]
+        amplitude, funnel = float(settings["shake"]), setup.world["funnel"]
         k = increment % (REST + TREMBLE) - REST
         if k < 0 or amplitude == 0.0:
             return {"funnel": funnel.home}
@@ -182,17 +182,17 @@ class GravityHopper(Scene):
         sway = phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
         return {"funnel": (funnel.home[0] + amplitude * sway, funnel.home[1])}
 
-    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
-        super().adjust(setup, values, changed)
+    def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
+        super().adjust(setup, settings, changed)
         if not changed.isdisjoint(("gravity", "fall")):
-            setup.gravity, setup.drag = _pull(values)
+            setup.gravity, setup.drag = _pull(settings)
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         del before, after  # it goes by pauses
         return increment
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
-        del values
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
+        del settings
         count = len(setup.packing)
         if not count:
             return Remarks(("empty",))
@@ -231,11 +231,11 @@ class GravityHopper(Scene):
         return super().general_checks(there, track)
 
 
-def _pull(values: Values) -> tuple[Point, float]:
+def _pull(settings: Values) -> tuple[Point, float]:
     """Gravity [k/R], and the drag [k/R²] that lets a free grain sink by ``fall``."""
-    tilt, weight = math.radians(float(values["tilt"])), float(values["gravity"])
+    tilt, weight = math.radians(float(settings["tilt"])), float(settings["gravity"])
     gravity = (weight * math.sin(tilt), -weight * math.cos(tilt))
-    return gravity, weight / float(values["fall"])
+    return gravity, weight / float(settings["fall"])
 
 
 def _nothing_hangs(setup: Setup, track: Track) -> Check:

@@ -190,26 +190,26 @@ class Scene(ABC):
 
     def settings(self, overrides: Mapping[str, object] | None = None) -> dict[str, Value]:
         """All parameters, defaults unless overridden (by values or by typed text). Raises InputError for a bad name or value."""
-        values: dict[str, Value] = {p.name: p.default for p in self.parameters}
+        settings: dict[str, Value] = {p.name: p.default for p in self.parameters}
         by_name = {p.name: p for p in self.parameters}
         for name, value in (overrides or {}).items():
             if name not in by_name:
                 close = nearest(name, by_name)
                 hint = f"did you mean {close}?" if close else f"there are: {', '.join(by_name)}"
                 raise InputError(f"scene {self.name} has no parameter {name!r}; {hint}")
-            values[name] = (
+            settings[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
             )
-        self.validate(values)
-        return values
+        self.validate(settings)
+        return settings
 
-    def validate(self, values: Values) -> None:
-        """Quick: raise InputError if the values, each allowed, do not go together. Subclasses add what they know."""
-        del values
+    def validate(self, settings: Values) -> None:
+        """Quick: raise InputError if the settings, each allowed, do not go together. Subclasses add what they know."""
+        del settings
 
-    def steps(self, values: Values) -> int:
+    def steps(self, settings: Values) -> int:
         """Length of the scripted drive in increments."""
-        del values
+        del settings
         return self.default_steps
 
     def check_packing(self, packing: str) -> str:
@@ -218,22 +218,22 @@ class Scene(ABC):
             raise InputError(f"unknown packing {packing!r}: choose {', '.join(self.packings)}")
         return packing
 
-    def ingredients(self, values: Values) -> Ingredients:
-        """The terms that ``values`` call for, so that they can be compiled before anything is built."""
-        return Ingredients(friction=float(values.get("friction", 0.0)) > 0.0)
+    def ingredients(self, settings: Values) -> Ingredients:
+        """The terms that ``settings`` call for, so that they can be compiled before anything is built."""
+        return Ingredients(friction=float(settings.get("friction", 0.0)) > 0.0)
 
     @abstractmethod
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         """Set the scene up. ``progress`` is told the share done. Raises InputError if the parameters do not go together."""
 
     @abstractmethod
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end. {}: wait."""
 
-    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
-        """Let what is built have ``values``, of which the live parameters in ``changed`` are new.
+    def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
+        """Let what is built have ``settings``, of which the live parameters in ``changed`` are new.
 
         Arrays of the packing are replaced, never written into.
         """
@@ -241,21 +241,21 @@ class Scene(ABC):
         for name, kind in (("regular_poisson_ratio", False), ("auxetic_poisson_ratio", True)):
             if name in changed:
                 of_kind = np.signbit(packing.poisson_ratio) == kind
-                new = np.where(of_kind, float(values[name]), packing.poisson_ratio)
+                new = np.where(of_kind, float(settings[name]), packing.poisson_ratio)
                 packing.poisson_ratio = new
         if "contact_stiffness" in changed:
-            packing.contact_stiffness = np.full(len(packing), float(values["contact_stiffness"]))
+            packing.contact_stiffness = np.full(len(packing), float(settings["contact_stiffness"]))
         if "friction" in changed:
-            setup.rub(float(values["friction"]))
+            setup.rub(float(settings["friction"]))
         if not changed.isdisjoint(p.name for p in SOLVER):
             setup.solver = replace(
                 setup.solver,
-                step=float(values["step"]),
-                tolerance=float(values["tolerance"]),
-                max_iterations=int(values["max_iterations"]),
+                step=float(settings["step"]),
+                tolerance=float(settings["tolerance"]),
+                max_iterations=int(settings["max_iterations"]),
             )
         if HAND_STRENGTH in changed:
-            setup.solver = replace(setup.solver, hand_strength=hand_strength(values))
+            setup.solver = replace(setup.solver, hand_strength=hand_strength(settings))
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
@@ -263,9 +263,9 @@ class Scene(ABC):
             return increment
         return math.ceil(increment * float(before["step"]) / float(after["step"]) - 1e-9)
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
-        del setup, values, latest
+        del setup, settings, latest
         return Remarks()
 
     def what_holds(self, setup: Setup, latest: Latest) -> Holding:
@@ -363,35 +363,35 @@ SOLVER = (
 )
 
 
-def recipe(values: Values, packing: str) -> Recipe:
-    """The grains that ``values`` and the kind of packing ask for."""
+def recipe(settings: Values, packing: str) -> Recipe:
+    """The grains that ``settings`` and the kind of packing ask for."""
     return Recipe(
         kind=packing,
-        auxetic_fraction=float(values["auxetic_fraction"]),
-        regular_poisson_ratio=float(values["regular_poisson_ratio"]),
-        auxetic_poisson_ratio=float(values["auxetic_poisson_ratio"]),
-        contact_stiffness=float(values["contact_stiffness"]),
+        auxetic_fraction=float(settings["auxetic_fraction"]),
+        regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
+        auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
+        contact_stiffness=float(settings["contact_stiffness"]),
     )
 
 
-def solver(values: Values) -> Settings:
-    """How carefully ``values`` ask to relax."""
+def solver(settings: Values) -> Settings:
+    """How carefully ``settings`` ask to relax."""
     return Settings(
-        step=float(values["step"]),
-        tolerance=float(values["tolerance"]),
-        max_iterations=int(values["max_iterations"]),
-        hand_strength=hand_strength(values),
+        step=float(settings["step"]),
+        tolerance=float(settings["tolerance"]),
+        max_iterations=int(settings["max_iterations"]),
+        hand_strength=hand_strength(settings),
     )
 
 
-def friction(values: Values, grains: int) -> Friction | None:
-    """That of so many grains as ``values`` call for; None without any."""
-    return Friction.of(float(values["friction"]), grains)
+def friction(settings: Values, grains: int) -> Friction | None:
+    """That of so many grains as ``settings`` call for; None without any."""
+    return Friction.of(float(settings["friction"]), grains)
 
 
-def hand_strength(values: Values) -> float:
-    """The strength of the hand that ``values`` ask for [k R]; without bound for a testing machine."""
-    strength = float(values[HAND_STRENGTH])
+def hand_strength(settings: Values) -> float:
+    """The strength of the hand that ``settings`` ask for [k R]; without bound for a testing machine."""
+    strength = float(settings[HAND_STRENGTH])
     return MACHINE if strength >= STRONGEST else strength
 
 

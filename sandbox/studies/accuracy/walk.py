@@ -57,7 +57,7 @@ class Start:
     """A built scene, driven to where the protocol begins: what every walk sets out from."""
 
     scene: Scene
-    values: Mapping[str, Value]
+    settings: Mapping[str, Value]
     setup: Setup
     packing: Packing
     placement: Floats
@@ -127,14 +127,14 @@ def begin(
 ) -> Start:
     """Build a scene, drive it for ``lead`` of its increments, on until the handle feels ``least_force`` [k R], and relax it."""
     scene = registry.get(name)
-    values = scene.settings(overrides)
-    terms = scene.ingredients(values)
+    settings = scene.settings(overrides)
+    terms = scene.ingredients(settings)
     compile_kernels(
         periodic=terms.periodic, rigid=terms.rigid, friction=terms.friction, gravity=terms.gravity
     )
-    setup = scene.build(values, packing, seed)
+    setup = scene.build(settings, packing, seed)
     placement = setup.world.placement()
-    start = Start(scene, values, setup, setup.packing, placement, setup.friction, 0)
+    start = Start(scene, settings, setup, setup.packing, placement, setup.friction, 0)
     walker = Walker(start, Knobs(tolerance=LEAD_TOLERANCE, max_iterations=LEAD_ITERATIONS))
     done = 0
     while done < MOST_LEAD * lead:
@@ -149,7 +149,13 @@ def begin(
             walker.rest(TIGHT)
     engine = walker.engine
     return Start(
-        scene, values, setup, engine.packing.copy(), setup.world.placement(), engine.friction, done
+        scene,
+        settings,
+        setup,
+        engine.packing.copy(),
+        setup.world.placement(),
+        engine.friction,
+        done,
     )
 
 
@@ -158,9 +164,9 @@ class Walker:
 
     def __init__(self, start: Start, knobs: Knobs) -> None:
         self.start, self.knobs = start, knobs
-        self.values = dict(start.values)
-        if "step" in self.values:
-            self.values["step"] = float(self.values["step"]) * knobs.step
+        self.settings = dict(start.settings)
+        if "step" in self.settings:
+            self.settings["step"] = float(self.settings["step"]) * knobs.step
         packing = start.packing.copy()
         if knobs.contact_stiffness is not None:
             packing.contact_stiffness[:] = knobs.contact_stiffness
@@ -201,7 +207,7 @@ class Walker:
         """The next increment of the protocol; None at its end."""
         targets: dict[str, Point] | None = {}
         if self.setup.drag == 0.0:  # else the grains go on by themselves
-            targets = self.start.scene.drive(self.setup, self.values, self._next)
+            targets = self.start.scene.drive(self.setup, self.settings, self._next)
         if targets is None:
             return None
         self._next += 1
