@@ -125,12 +125,12 @@ class Relaxation:
         )
         control = fire.fresh_control(self._limits.dt_max)
         if not count:
-            control[fire.START_ENERGY] = 0.0
+            control["start_energy"] = 0.0
         self._minimizer = _minimizer(packing, friction is not None, control)
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
         if not np.all(np.isfinite(packing.state)):
             # The neighbour search would lose such a grain without a word.
-            control[fire.ENERGY] = control[fire.RESIDUAL] = np.nan
+            control["energy"] = control["residual"] = np.nan
             self._reason = StopReason.NOT_FINITE
 
     def run(self, max_iterations: int) -> Report:
@@ -164,13 +164,13 @@ class Relaxation:
 
     def report(self) -> Report:
         """How it stands now."""
-        control = self._minimizer.control
+        control = self._minimizer.control[0]
         return Report(
             reason=self._reason,
-            energy=float(control[fire.ENERGY]),
-            start_energy=float(control[fire.START_ENERGY]),
-            residual=float(control[fire.RESIDUAL]),
-            mean_contact_force=float(control[fire.SCALE]),
+            energy=float(control["energy"]),
+            start_energy=float(control["start_energy"]),
+            residual=float(control["residual"]),
+            mean_contact_force=float(control["scale"]),
             iterations=self.iterations,
         )
 
@@ -233,7 +233,7 @@ class Relaxation:
             )
 
 
-def _minimizer(packing: Packing, spins: bool, control: NDArray[np.float64]) -> fire.Minimizer:
+def _minimizer(packing: Packing, spins: bool, control: NDArray[np.void]) -> fire.Minimizer:
     count = len(packing)
     nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
     rest_area = packing.rest_radius**2
