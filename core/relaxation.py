@@ -89,24 +89,12 @@ class Relaxation:
         self.iterations = 0
         count = len(packing)
         self._box = None if packing.box is None else packing.box.kernel_form()
-        if packing.box is not None and count:
-            largest = float(packing.rest_radius.max())
-            reach = 2.0 * float(packing.semi_axes[0].max()) + skin * largest
-            if min(packing.box.width, packing.box.height) < 2.0 * reach:
-                raise InputError(
-                    f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"
-                )
+        _check_box(packing, skin)
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
         self._friction = friction
-        if not drag >= 0.0:
-            raise InputError("the drag must be 0 or more")
-        self._weight = None
-        if gravity is not None or drag > 0.0:
-            pull = (0.0, 0.0) if gravity is None else gravity
-            start = packing.state[:2].copy()
-            self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
+        self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
         self.threads = threads
@@ -231,6 +219,29 @@ class Relaxation:
             self._minimizer = self._minimizer._replace(
                 lists=neighbors.allocate(grains, pairs, slots)
             )
+
+
+def _check_box(packing: Packing, skin: float) -> None:
+    """Raises InputError where a grain could meet two images of another."""
+    if packing.box is None or not len(packing):
+        return
+    reach = 2.0 * float(packing.semi_axes[0].max()) + skin * float(packing.rest_radius.max())
+    if min(packing.box.width, packing.box.height) < 2.0 * reach:
+        raise InputError(
+            f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"
+        )
+
+
+def _weight(
+    packing: Packing, gravity: tuple[float, float] | None, drag: float
+) -> fire.Weight | None:
+    """None where nothing pulls. Raises InputError for a drag that drives."""
+    if not drag >= 0.0:
+        raise InputError("the drag must be 0 or more")
+    if gravity is None and drag == 0.0:
+        return None
+    x, y = (0.0, 0.0) if gravity is None else gravity
+    return fire.Weight(float(x), float(y), float(drag), packing.state[:2].copy())
 
 
 def _minimizer(packing: Packing, spins: bool, control: NDArray[np.void]) -> fire.Minimizer:

@@ -110,29 +110,11 @@ class Hopper(Scene):
             left[1],
             left[2],
         ]
-        piston = RigidBody(
-            "piston",
-            "piston",
-            position=(0.0, top),
-            polygons=[
-                (
-                    (
-                        (-half_width, 0.0),
-                        (half_width, 0.0),
-                        (half_width, PISTON),
-                        (-half_width, PISTON),
-                    ),
-                    0.0,
-                )
-            ],
-            axis=(0.0, -1.0),
-            travel=(-LIFT, channel - 1.0),
-        )
         world = RigidWorld(
             [
                 wall("right wall", right, WALL),
                 wall("left wall", left, WALL),
-                piston,
+                _piston(half_width, top, channel - 1.0),
                 wall("gate", [(-shape.lip_x, shape.lip_y), (shape.lip_x, shape.lip_y)], WALL),
             ]
         )
@@ -203,6 +185,24 @@ class Hopper(Scene):
         if found is None:
             return super().what_holds(setup, latest)
         return Holding(Text("an arch of {grains} grains holds", grains=int(found.sum())), found)
+
+
+def _piston(half_width: float, top: float, way: float) -> RigidBody:
+    """As wide as the channel, its face at ``top``, from where it can go down by ``way`` [R]."""
+    corners = (
+        (-half_width, 0.0),
+        (half_width, 0.0),
+        (half_width, PISTON),
+        (-half_width, PISTON),
+    )
+    return RigidBody(
+        "piston",
+        "piston",
+        position=(0.0, top),
+        polygons=[(corners, 0.0)],
+        axis=(0.0, -1.0),
+        travel=(-LIFT, way),
+    )
 
 
 def _arch(setup: Setup, latest: Latest) -> NDArray[np.bool_] | None:

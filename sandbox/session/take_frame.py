@@ -84,9 +84,7 @@ def take(shown: Shown) -> Frame:
         curve_stroke=shown.history.curve[0],
         curve_force=shown.history.curve[1],
         spin=None if shown.setup.friction is None else shown.setup.friction.spin.copy(),
-        curve_label=Text("force on the {label} [k R]", label=shown.drive.label)
-        if curve is None
-        else curve.force_label,
+        curve_label=_force_label(shown),
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
         hand_limit=shown.setup.solver.hand_strength if curve is None else math.inf,
         box=None if box is None else (box.width, box.height, box.shift),
@@ -101,6 +99,14 @@ def take(shown: Shown) -> Frame:
         events=shown.history.events,
         ahead=_ahead(shown),
     )
+
+
+def _force_label(shown: Shown) -> str:
+    """What is plotted against the stroke."""
+    curve = shown.setup.curve
+    if curve is not None:
+        return curve.force_label
+    return Text("force on the {label} [k R]", label=shown.drive.label)
 
 
 def _force_error(history: History) -> float:

@@ -24,6 +24,11 @@ DRIFT = 1e-6  # [R] after all of them
 
 def cases() -> Iterator[Case]:
     """All of this module."""
+    yield from _long_ways()
+    yield from _too_little()
+
+
+def _long_ways() -> Iterator[Case]:
     for kind, friction in itertools.product(KINDS, (0.0, 0.5, 10.0)):
         yield Case(
             "sheared by strain 10",
@@ -49,6 +54,9 @@ def cases() -> Iterator[Case]:
             _cycled(kind),
             seconds=90.0,
         )
+
+
+def _too_little() -> Iterator[Case]:
     for most, kind in itertools.product((1, 10, 100), KINDS):
         yield Case(
             "too few iterations",
