@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from core import fire, observables, reference_friction
+from core import fire, observables
 from core.errors import InputError
 from core.friction import (
     TANGENTIAL_STIFFNESS,
@@ -27,7 +27,7 @@ from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
 from core.system import System
-from tests.core import examples
+from tests.core import examples, reference_friction
 
 Floats = examples.Floats
 EPSILON = float(np.finfo(np.float64).eps)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core import fire, observables, reference_friction
+from core import fire, observables
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Quasistatic
@@ -15,7 +15,7 @@ from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
 from core.system import System
-from tests.core import examples
+from tests.core import examples, reference_friction
 
 G = 0.05  # [k/R]
 TOLERANCE = 1e-7
