@@ -35,6 +35,7 @@ from sandbox.session.frame import Frame
 from sandbox.session.history import History, Row
 from sandbox.session.log import Log
 from sandbox.session.run import Run
+from sandbox.session.take_frame import take
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
 from scenes.parameter import check_seed
@@ -202,7 +203,7 @@ class Session:
             self.run.checkpoints.squeeze(OLD_RUN_BYTES)
         self._start, self._run = moment.start, moment.run
         self._run.restore(moment.checkpoint)
-        self._run.hands.course.still()
+        self._run.course.still()
 
     def rebuilds(self, command: Command) -> bool:
         """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
@@ -315,8 +316,7 @@ class Session:
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""
         now = self.run.kept
-        frame = self.run.frame(self._past.can_undo(now), self._past.can_redo)
-        return replace(frame, refusals=self._refusals[0], refusal=self._refusals[1])
+        return take(self.run, self._past.can_undo(now), self._past.can_redo, self._refusals)
 
     def state_hash(self) -> str:
         """Hash of every bit of the state."""
