@@ -15,12 +15,12 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli import main as cli
+from sandbox.studies.common.pool import Stopped
 from sandbox.studies.paper import study as paper
 from sandbox.studies.paper.claims import Claim, Figure, Finding, Line, Measured, Panel
 from sandbox.studies.paper.runs import (
     Request,
     Result,
-    Stopped,
     Store,
     execute,
     run_all,

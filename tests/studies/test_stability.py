@@ -16,6 +16,7 @@ from core.packing import Packing, PeriodicBox
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
 from sandbox.cli import main as cli
+from sandbox.studies.common.pool import Stopped
 from sandbox.studies.stability import report as stability_report
 from sandbox.studies.stability import rigs as stability_rigs
 from sandbox.studies.stability import study as stability
@@ -32,7 +33,7 @@ from sandbox.studies.stability.case import (
     Outcome,
     carry_out,
 )
-from sandbox.studies.stability.watch import Stopped, Watch, balance, reported, soundness
+from sandbox.studies.stability.watch import Watch, balance, reported, soundness
 
 LIGHT = ("one grain between two plates", "packings that make no sense", "tolerance")
 

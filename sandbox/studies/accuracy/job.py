@@ -22,6 +22,7 @@ from sandbox.studies.accuracy.fronts import rms
 from sandbox.studies.accuracy.peers import l_bfgs_b, newton
 from sandbox.studies.accuracy.protocols import FULL, QUICK, Protocol, Sweeps, protocol
 from sandbox.studies.accuracy.walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
+from sandbox.studies.common.pool import Stopped
 from scenes import registry
 
 Stopping = Callable[[], bool]
@@ -52,10 +53,6 @@ class Job:
         words = [asdict(self), asdict(plan), asdict(sweeps), settings, DATA_VERSION, __version__]
         digest = hashlib.sha256(json.dumps(words, sort_keys=True).encode()).hexdigest()[:12]
         return f"{self.scene}-{self.seed}-{digest}"
-
-
-class Stopped(Exception):
-    """The study was interrupted."""
 
 
 def measure(job: Job, stopping: Stopping = lambda: False) -> dict[str, Any]:

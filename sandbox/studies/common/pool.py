@@ -70,6 +70,10 @@ def _begin(stop: Event, parent: int) -> None:
         threading.Thread(target=end_with_parent, daemon=True).start()
 
 
+class Stopped(Exception):
+    """The study was interrupted."""
+
+
 def stopping() -> bool:
     """In a process of a pool: whether the study has been interrupted."""
     return _stop is not None and _stop.is_set()

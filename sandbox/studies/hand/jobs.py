@@ -16,6 +16,7 @@ from core.relaxation import FAILED
 from sandbox import __version__
 from sandbox.session.commands import Grab, Move, Protocol, Release
 from sandbox.session.session import Session
+from sandbox.studies.common.pool import Stopped
 from sandbox.studies.hand.tour_claims import play
 from scenes import registry
 from scenes.scene import HAND_STRENGTH
@@ -33,10 +34,6 @@ BROKEN = frozenset(map(str, FAILED))
 
 Stopping = Callable[[], bool]
 Row = dict[str, Any]
-
-
-class Stopped(Exception):
-    """The study was interrupted."""
 
 
 @dataclass(frozen=True)

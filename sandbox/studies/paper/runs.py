@@ -21,7 +21,7 @@ from sandbox import __version__
 from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
-from sandbox.studies.common.pool import Pool, stopping
+from sandbox.studies.common.pool import Pool, Stopped, stopping
 from sandbox.studies.paper.probes import PROBES
 from scenes.parameter import Value
 from scenes.scene import Ingredients
@@ -88,10 +88,6 @@ class Result:
     def column(self, name: str) -> np.ndarray:
         """A column (M,) float64."""
         return np.array(self.columns[name], dtype=np.float64)
-
-
-class Stopped(Exception):
-    """The study was interrupted."""
 
 
 def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> Result:

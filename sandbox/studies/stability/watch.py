@@ -27,6 +27,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
 from core.rigid import Point, RigidBody, RigidWorld
 from sandbox.session.session import Session
+from sandbox.studies.common.pool import Stopped
 
 SLICE = 400  # force evaluations between two looks at the clock
 ROUNDING = 1e-9  # of the sum of the magnitudes of what is added up
@@ -34,10 +35,6 @@ ROUNDING = 1e-9  # of the sum of the magnitudes of what is added up
 
 class TimeLimit(Exception):
     """A case took more time of a core than it may."""
-
-
-class Stopped(Exception):
-    """The study was interrupted."""
 
 
 @dataclass(frozen=True)
