@@ -7,7 +7,6 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -104,26 +103,19 @@ def _run(
 ) -> None:
     from tqdm import tqdm
 
-    waiting = list(reversed(missing))
-    if not waiting:
+    if not missing:
         return
     bar = tqdm(total=len(missing), unit="job", desc="accuracy", file=sys.stderr, mininterval=1.0)
     with bar, _one_thread(), Pool(jobs) as pool:
-        under_way: dict[Future[dict[str, Any]], Job] = {}
-        while waiting or under_way:
-            while waiting and len(under_way) < jobs:
-                job = waiting.pop()
-                under_way[pool.call(measure or execute, job)] = job
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                job = under_way.pop(future)
-                error = future.exception()
-                if error is None:
-                    found[job] = json.loads(json.dumps(future.result()))
-                    _keep(folder, job, found[job])
-                else:
-                    failures[job.scene] = f"{type(error).__name__}: {error}"
-                    bar.write(f"failed: {job.scene}, seed {job.seed}: {error}", file=sys.stderr)
-                bar.update()
+        for job, future in pool.each(measure or execute, missing):
+            error = future.exception()
+            if error is None:
+                found[job] = json.loads(json.dumps(future.result()))
+                _keep(folder, job, found[job])
+            else:
+                failures[job.scene] = f"{type(error).__name__}: {error}"
+                bar.write(f"failed: {job.scene}, seed {job.seed}: {error}", file=sys.stderr)
+            bar.update()
 
 
 @contextmanager

@@ -6,11 +6,11 @@ import json
 import sys
 import time
 from collections.abc import Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from pathlib import Path
 
 from core.warmup import compile_kernels
+from sandbox.bars import bar_options
 from sandbox.interrupts import deferred
 from sandbox.lessons import tours
 from sandbox.studies.common.folder import machine, write_text
@@ -135,39 +135,24 @@ def _run(
 
     if not missing:
         return
-    watched = sys.stderr.isatty()
     with (
-        tqdm(
-            total=found + len(missing),
-            initial=found,
-            unit="run",
-            file=sys.stderr,
-            mininterval=0.1 if watched else 10.0,
-            ncols=None if watched else 100,
-        ) as bar,
+        tqdm(total=found + len(missing), initial=found, unit="run", **bar_options()) as bar,
         Pool(jobs) as pool,
     ):
         bar.set_description_str("compiling")
         pool.call(_compile).exception()  # what fails here fails again, and is told then
         bar.set_description_str("hands")
-        under_way: dict[Future[Row], Job] = {}
-        waiting = list(reversed(missing))
-        while waiting or under_way:
-            while waiting and len(under_way) < jobs:
-                job = waiting.pop()
-                under_way[pool.call(_carry_out, job)] = job
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                job = under_way.pop(future)
-                error = future.exception()
-                if error is None:
-                    row = future.result()
-                    rows[job.key()] = row
-                    with deferred(), kept.open("a", encoding="utf-8") as file:
-                        file.write(as_line(row, job.key()))
-                else:
-                    failures.append(f"{job}: {type(error).__name__}: {error}")
-                    bar.write(f"failed: {failures[-1]}", file=sys.stderr)
-                bar.update()
+        for job, future in pool.each(_carry_out, missing):
+            error = future.exception()
+            if error is None:
+                row = future.result()
+                rows[job.key()] = row
+                with deferred(), kept.open("a", encoding="utf-8") as file:
+                    file.write(as_line(row, job.key()))
+            else:
+                failures.append(f"{job}: {type(error).__name__}: {error}")
+                bar.write(f"failed: {failures[-1]}", file=sys.stderr)
+            bar.update()
 
 
 def _carry_out(job: Job) -> Row:

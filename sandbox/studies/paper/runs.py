@@ -6,7 +6,6 @@ import hashlib
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass, field
 from itertools import islice
@@ -166,32 +165,25 @@ def run_all(
     Kernels are compiled once before the rest begins; ``compiling`` is told. Raises KeyboardInterrupt after all
     processes have ended.
     """
-    waiting = list(reversed(requests))
-    if not waiting:
+    if not requests:
         return
     with Pool(jobs) as pool:
         compiling()
         pool.call(
             _warm, _terms(requests)
         ).exception()  # what fails here fails again, and is told then
-        under_way: dict[Future[Result], Request] = {}
-        while waiting or under_way:
-            while waiting and len(under_way) < jobs:
-                request = waiting.pop()
-                under_way[pool.call(_execute, request)] = request
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                request = under_way.pop(future)
-                error = future.exception()
-                if error is None:
-                    result = future.result()
-                elif isinstance(error, BrokenProcessPool):
-                    result = Result(request, failure=LOST)
-                elif isinstance(error, InputError):
-                    result = Result(request, failure=str(error))
-                else:
-                    result = Result(request, failure=f"{type(error).__name__}: {error}")
-                store.write(result)
-                done(result)
+        for request, future in pool.each(_execute, requests):
+            error = future.exception()
+            if error is None:
+                result = future.result()
+            elif isinstance(error, BrokenProcessPool):
+                result = Result(request, failure=LOST)
+            elif isinstance(error, InputError):
+                result = Result(request, failure=str(error))
+            else:
+                result = Result(request, failure=f"{type(error).__name__}: {error}")
+            store.write(result)
+            done(result)
 
 
 def _execute(request: Request) -> Result:

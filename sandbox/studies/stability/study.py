@@ -7,7 +7,7 @@ import json
 import sys
 import time
 from collections.abc import Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from pathlib import Path
@@ -107,20 +107,13 @@ def _run(
             bar.set_description_str("compiling")
             pool.call(_compile).exception()  # what fails here fails again, and is told then
         bar.set_description_str("cases")
-        under_way: dict[Future[Outcome], Case] = {}
-        rest = iter(waiting)
-        while True:
-            for case in itertools.islice(rest, jobs - len(under_way)):
-                under_way[pool.call(_carry_out, case.group, case.name, quick)] = case
-            if not under_way:
-                return
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                outcome = _outcome(future, under_way.pop(future))
-                outcomes.append(outcome)
-                _keep(kept, outcome, quick)
-                bar.update()
-                if outcome.verdict == FAILS:
-                    bar.write(f"FAILS: {outcome.group}: {outcome.name}", file=sys.stderr)
+        for case, future in pool.each(_carry_out, waiting, lambda c: (c.group, c.name, quick)):
+            outcome = _outcome(future, case)
+            outcomes.append(outcome)
+            _keep(kept, outcome, quick)
+            bar.update()
+            if outcome.verdict == FAILS:
+                bar.write(f"FAILS: {outcome.group}: {outcome.name}", file=sys.stderr)
 
 
 def _outcome(future: Future[Outcome], case: Case) -> Outcome:
