@@ -326,6 +326,7 @@ MATERIAL = (
 )
 HAND_STRENGTH = "hand_strength"
 STRONGEST = 1000.0  # [k R] stands for a testing machine
+BY_MACHINE = (HAND_STRENGTH, STRONGEST)  # what a protocol sets that is driven wherever it wants
 
 
 def hand(default: float) -> Parameter:
