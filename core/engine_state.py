@@ -33,7 +33,7 @@ class EngineState:
     own_motion: Floats  # (2, N) beyond that of the periodic cell [R]
     last_moved: dict[str, Point]
     friction: Friction | None
-    settings: Settings
+    solver: Settings
     gravity: Point | None
     drag: float
 

@@ -32,23 +32,31 @@ DT_FACTOR = 0.6  # of √(m / C k); velocity Verlet is stable to about 0.7
 SHAPE_MASS = 4.0  # inertia of p, q1, q2 relative to x, y
 SCALE_EVERY = 50  # iterations between looks at the mean contact force
 
-# Slots of Minimizer.control.
-(
-    DT,
-    ALPHA,
-    KEEP,
-    PUSH,
-    MOVED,
-    SCALE,
-    COUNTDOWN,
-    ENERGY,
-    RESIDUAL,
-    LISTED,
-    PENDING,
-    FASTEST,
-    START_ENERGY,
-) = range(13)
-SLOTS = 13
+# What a relaxation needs to know from one call to the next, ``Minimizer.control[0]``: a record, as kernels can write into it.
+_CONTROL = {
+    "dt": "f8",
+    "alpha": "f8",
+    "keep": "f8",  # of the velocity at the next kick
+    "push": "f8",  # of the force over the inertia
+    "moved": "f8",  # a bound on how far any grain has come since the lists were made [R]
+    "scale": "f8",  # mean contact force [k R]
+    "countdown": "i8",  # iterations until that is looked at again
+    "energy": "f8",  # [k R²]
+    "start_energy": "f8",  # nan before the first evaluation
+    "residual": "f8",
+    "fastest": "f8",  # largest velocity, later largest force, of any degree of freedom
+    "fastest_bits": "i8",  # the same place: sweeps find the largest by its bits
+    "listed": "?",  # are the lists good?
+    "pending": "?",  # a step is made whose forces are not computed yet
+}
+CONTROL = np.dtype(
+    {
+        "names": list(_CONTROL),
+        "formats": list(_CONTROL.values()),
+        "offsets": [*range(0, 88, 8), 80, 88, 89],
+        "itemsize": 96,
+    }
+)
 
 
 class Grains(NamedTuple):
@@ -77,7 +85,7 @@ class Minimizer(NamedTuple):
     identity: NDArray[np.int64]  # (N,) place of each grain in the packing
     scratch: NDArray[np.float64]  # (N,)
     scratch_identity: NDArray[np.int64]  # (N,)
-    control: NDArray[np.float64]  # (SLOTS,)
+    control: NDArray[np.void]  # (1,) of CONTROL
 
 
 class Weight(NamedTuple):
@@ -101,13 +109,13 @@ class Limits(NamedTuple):
     skin: float  # [R]
 
 
-def fresh_control(dt_max: float) -> NDArray[np.float64]:
+def fresh_control(dt_max: float) -> NDArray[np.void]:
     """``Minimizer.control`` before the first evaluation; ``dt_max`` as in ``Limits``."""
-    control = np.zeros(SLOTS)
-    control[DT] = DT_START * dt_max
-    control[ALPHA] = ALPHA_START
-    control[PENDING] = 1.0
-    control[START_ENERGY] = np.nan
+    control = np.zeros(1, dtype=CONTROL)
+    control["dt"] = DT_START * dt_max
+    control["alpha"] = ALPHA_START
+    control["pending"] = True
+    control["start_energy"] = np.nan
     return control
 
 
@@ -135,8 +143,8 @@ def relist(m, box, rigid, friction, skin):
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
         return RIGID_FULL
     m.reference[:] = m.state
-    m.control[MOVED] = 0.0
-    m.control[LISTED] = 1.0
+    m.control[0].moved = 0.0
+    m.control[0].listed = True
     return FIT
 
 
@@ -266,44 +274,45 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
     ``box``, ``rigid``, ``friction`` and ``gravity`` are None where the scene has no such term, ``shared`` where one thread does
     it all; then no code for it exists.
     """
-    control = m.control
-    bits = control.view(np.int64)
+    control = m.control[0]
     state = m.state.reshape(-1)
     velocity = m.velocity.reshape(-1)
     force = m.force.reshape(-1)
     inverse_mass = m.inverse_mass.reshape(-1)
     chunk = CHUNK * m.state.shape[0]
     for iteration in range(max_iterations):
-        dt = control[DT]
-        if control[PENDING] == 0.0:
-            keep, push = control[KEEP], control[PUSH]
+        dt = control.dt
+        if not control.pending:
+            keep, push = control.keep, control.push
             if shared is None:
-                bits[FASTEST] = sweeps.first_kick(velocity, force, inverse_mass, keep, push, chunk)
+                control.fastest_bits = sweeps.first_kick(
+                    velocity, force, inverse_mass, keep, push, chunk
+                )
             else:
-                bits[FASTEST] = threads.first_kick(
+                control.fastest_bits = threads.first_kick(
                     velocity, force, inverse_mass, keep, push, chunk, shared.most
                 )
-            fastest = control[FASTEST]
+            fastest = control.fastest
             step = dt if fastest * dt <= limits.clamp else limits.clamp / fastest
             if shared is None:
                 drift(state, velocity, step)
             else:
                 threads.move(m.state, m.velocity, step, m.support, m.force)
             # 4 × the largest change of any degree of freedom bounds displacement plus growth of one grain.
-            control[MOVED] += 4.0 * step * fastest
-            if not control[MOVED] <= 0.5 * limits.skin:
-                control[MOVED] = farthest(m.state, m.reference)
-                if not control[MOVED] <= 0.5 * limits.skin:
-                    control[LISTED] = 0.0
-        if control[LISTED] == 0.0:
-            control[PENDING] = 1.0  # the step is made; its forces wait for the new lists
+            control.moved += 4.0 * step * fastest
+            if not control.moved <= 0.5 * limits.skin:
+                control.moved = farthest(m.state, m.reference)
+                if not control.moved <= 0.5 * limits.skin:
+                    control.listed = False
+        if not control.listed:
+            control.pending = True  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
-        if shared is not None and control[PENDING] != 0.0:
+        if shared is not None and control.pending:
             threads.move(m.state, m.velocity, 0.0, m.support, m.force)
-        control[PENDING] = 0.0
-        control[ENERGY] = evaluate(m, box, rigid, friction, gravity, shared)
-        if np.isnan(control[START_ENERGY]):
-            control[START_ENERGY] = control[ENERGY]
+        control.pending = False
+        control.energy = evaluate(m, box, rigid, friction, gravity, shared)
+        if np.isnan(control.start_energy):
+            control.start_energy = control.energy
         if shared is None:
             power, force_square, speed_square, most = sweeps.last_kick(
                 velocity, force, inverse_mass, 0.5 * dt, chunk
@@ -312,21 +321,21 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
             power, force_square, speed_square, most = threads.last_kick(
                 velocity, force, inverse_mass, 0.5 * dt, chunk, shared.sums, shared.most
             )
-        bits[FASTEST] = most
-        largest_force = control[FASTEST]
+        control.fastest_bits = most
+        largest_force = control.fastest
         # Not isfinite: it is compiled to v - v == 0, which the licence to reorder sums turns into "true" for a sum.
-        if not abs(power + force_square + speed_square + control[ENERGY]) < np.inf:
-            control[RESIDUAL] = np.nan
+        if not abs(power + force_square + speed_square + control.energy) < np.inf:
+            control.residual = np.nan
             return NOT_FINITE, iteration + 1
-        control[COUNTDOWN] -= 1.0
-        if control[COUNTDOWN] <= 0.0 or largest_force <= limits.tolerance * control[SCALE]:
-            control[COUNTDOWN] = SCALE_EVERY
-            control[SCALE] = max(mean_contact_force(m, box, rigid), limits.force_floor)
-        control[RESIDUAL] = largest_force / control[SCALE]
-        if control[RESIDUAL] <= limits.tolerance:
+        control.countdown -= 1
+        if control.countdown <= 0 or largest_force <= limits.tolerance * control.scale:
+            control.countdown = SCALE_EVERY
+            control.scale = max(mean_contact_force(m, box, rigid), limits.force_floor)
+        control.residual = largest_force / control.scale
+        if control.residual <= limits.tolerance:
             # Asked here only: a grain that is flat on the way is pushed back by the guard of its area.
             return COLLAPSED if collapsed(m.state) else CONVERGED, iteration + 1
-        control[DT], control[ALPHA], control[KEEP], control[PUSH] = steer(
-            power, force_square, speed_square, dt, control[ALPHA], limits.dt_max
+        control.dt, control.alpha, control.keep, control.push = steer(
+            power, force_square, speed_square, dt, control.alpha, limits.dt_max
         )
     return BUDGET, max_iterations

@@ -202,6 +202,111 @@ class FrictionForces:
         return -np.array(tensor) / area
 
 
+class _Touching(NamedTuple):
+    """Contacts of one sort before an increment, (K,) each; names as in ``FrictionTerms`` and ``FrozenContacts``.
+
+    All tangents are n turned counter-clockwise, n from grain i to grain j, or to the body.
+    """
+
+    i: Indices
+    j: Indices
+    tx: Floats
+    ty: Floats
+    arm_i: Floats
+    arm_j: Floats
+    stiffness: Floats
+    normal_force: Floats
+    offset: Floats
+    key: Indices
+    primitive: Indices
+    x: Floats
+    y: Floats
+    dx: Floats
+    dy: Floats
+
+
+def _between_grains(
+    packing: Packing, support: Floats, pairs: GrainContacts, box: PeriodicBox | None
+) -> _Touching:
+    """As the packing stands, in a periodic cell that becomes ``box``."""
+    r = np.hypot(pairs.dx, pairs.dy)
+    nx, ny = pairs.dx / r, pairs.dy / r
+    # Both arms reach to one point, half way between the outlines: then h_i + h_j is the distance of the centres, the
+    # forces exert no torque on the pair, and a pair that turns as one rigid whole does not slip.
+    arm_i = _arm(support, pairs.i, nx, ny) - 0.5 * pairs.overlap
+    offset = ny * (packing.x[pairs.i] - packing.x[pairs.j]) - nx * (
+        packing.y[pairs.i] - packing.y[pairs.j]
+    )
+    stretch_x, stretch_y = _stretch(
+        packing.box,
+        box,
+        pairs.dx - packing.x[pairs.j] + packing.x[pairs.i],
+        pairs.dy - packing.y[pairs.j] + packing.y[pairs.i],
+    )
+    offset += ny * stretch_x - nx * stretch_y
+    return _Touching(
+        i=pairs.i,
+        j=pairs.j,
+        tx=-ny,
+        ty=nx,
+        arm_i=arm_i,
+        arm_j=r - arm_i,
+        stiffness=TANGENTIAL_STIFFNESS * pairs.normal_force / pairs.overlap,
+        normal_force=pairs.normal_force,
+        offset=offset,
+        key=_pair_keys(packing, pairs),
+        primitive=np.full(len(pairs.i), -1),
+        x=packing.x[pairs.i] + arm_i * nx,
+        y=packing.y[pairs.i] + arm_i * ny,
+        dx=pairs.dx,
+        dy=pairs.dy,
+    )
+
+
+def _with_bodies(
+    packing: Packing,
+    support: Floats,
+    bodies: RigidContacts,
+    primitives: Floats,
+    owner: Indices,
+    before: Floats,
+    after: Floats,
+    box: PeriodicBox | None,
+) -> _Touching:
+    """The same with bodies, whose contact point moves as prescribed; arguments as for ``Friction.begin``."""
+    g = bodies.grain
+    rows = primitives[bodies.primitive]
+    bx, by = bodies.x - packing.x[g], bodies.y - packing.y[g]
+    mx, my = _body_normals(rows, packing, bodies)
+    arm = np.where(rows[:, 0] == DISC, _arm(support, g, mx, my), np.abs(bx * mx + by * my))
+    x = packing.x[g] + arm * mx + bodies.image_x
+    y = packing.y[g] + arm * my + bodies.image_y
+    body = owner[bodies.primitive]
+    shift = after[body] - before[body]
+    moved_x = shift[:, 0] - shift[:, 2] * (y - before[body, 1])
+    moved_y = shift[:, 1] + shift[:, 2] * (x - before[body, 0])
+    stretch_x, stretch_y = _stretch(packing.box, box, bodies.image_x, bodies.image_y)
+    offset = my * packing.x[g] - mx * packing.y[g]
+    offset += my * (moved_x - stretch_x) - mx * (moved_y - stretch_y)
+    return _Touching(
+        i=g,
+        j=np.full(len(g), -1),
+        tx=-my,
+        ty=mx,
+        arm_i=arm,
+        arm_j=np.zeros(len(g)),
+        stiffness=TANGENTIAL_STIFFNESS * packing.contact_stiffness[g],
+        normal_force=bodies.normal_force,
+        offset=offset,
+        key=packing.label[g] * _GRAIN + _BODY + bodies.primitive,
+        primitive=bodies.primitive,
+        x=x,
+        y=y,
+        dx=arm * mx,
+        dy=arm * my,
+    )
+
+
 class Friction:
     """Friction of one packing: the coefficient, every grain's spin, and what every contact remembers."""
 
@@ -215,6 +320,11 @@ class Friction:
         self.spin: Floats = np.zeros(grains)
         self._keys: Indices = np.zeros(0, dtype=np.int64)
         self._slips: Floats = np.zeros(0)
+
+    @classmethod
+    def of(cls, coefficient: float, grains: int) -> Friction | None:
+        """The same, and for a coefficient of 0 None."""
+        return None if coefficient == 0.0 else cls(coefficient, grains)
 
     def copy(self) -> Friction:
         """An independent copy, equal to the last bit."""
@@ -289,75 +399,31 @@ class Friction:
         ``box`` is the periodic cell afterwards, if it changes.
         """
         support = observables.support_coefficients(packing)
-        r = np.hypot(pairs.dx, pairs.dy)
-        nx, ny = pairs.dx / r, pairs.dy / r
-        # Both arms reach to one point, half way between the outlines: then h_i + h_j is the distance of the centres, the
-        # forces exert no torque on the pair, and a pair that turns as one rigid whole does not slip.
-        arm_i = _arm(support, pairs.i, nx, ny) - 0.5 * pairs.overlap
-        arm_j = r - arm_i
-        stiffness = TANGENTIAL_STIFFNESS * pairs.normal_force / pairs.overlap
-        # Between grains. All tangents are n turned counter-clockwise, n from i to j, or from the grain to the body.
-        offset = ny * (packing.x[pairs.i] - packing.x[pairs.j]) - nx * (
-            packing.y[pairs.i] - packing.y[pairs.j]
+        parts = (
+            _between_grains(packing, support, pairs, box),
+            _with_bodies(packing, support, bodies, primitives, owner, before, after, box),
         )
-        stretch_x, stretch_y = _stretch(
-            packing.box,
-            box,
-            pairs.dx - packing.x[pairs.j] + packing.x[pairs.i],
-            pairs.dy - packing.y[pairs.j] + packing.y[pairs.i],
-        )
-        offset += ny * stretch_x - nx * stretch_y
-        contact_x = packing.x[pairs.i] + arm_i * nx
-        contact_y = packing.y[pairs.i] + arm_i * ny
-        # With bodies, whose contact point moves as prescribed.
-        g = bodies.grain
-        rows = primitives[bodies.primitive]
-        bx, by = bodies.x - packing.x[g], bodies.y - packing.y[g]
-        mx, my = _body_normals(rows, packing, bodies)
-        arm_b = np.where(rows[:, 0] == DISC, _arm(support, g, mx, my), np.abs(bx * mx + by * my))
-        body_x = packing.x[g] + arm_b * mx + bodies.image_x
-        body_y = packing.y[g] + arm_b * my + bodies.image_y
-        body = owner[bodies.primitive]
-        shift = after[body] - before[body]
-        moved_x = shift[:, 0] - shift[:, 2] * (body_y - before[body, 1])
-        moved_y = shift[:, 1] + shift[:, 2] * (body_x - before[body, 0])
-        stretch_x, stretch_y = _stretch(packing.box, box, bodies.image_x, bodies.image_y)
-        offset_b = my * packing.x[g] - mx * packing.y[g]
-        offset_b += my * (moved_x - stretch_x) - mx * (moved_y - stretch_y)
-        keys = np.concatenate(
-            [_pair_keys(packing, pairs), packing.label[g] * _GRAIN + _BODY + bodies.primitive]
-        )
-        caps = self.coefficient * np.concatenate([pairs.normal_force, bodies.normal_force])
-        stiffnesses = np.concatenate(
-            [stiffness, TANGENTIAL_STIFFNESS * packing.contact_stiffness[g]]
-        )
-        remembered = self._recall(keys)
-        limit = caps / stiffnesses
+        both = _Touching._make(map(np.concatenate, zip(*parts, strict=True)))
+        count = len(both.key)
+        caps = self.coefficient * both.normal_force
+        limit = caps / both.stiffness
         terms = FrictionTerms(
-            i=np.concatenate([pairs.i, g]),
-            j=np.concatenate([pairs.j, np.full(len(g), -1)]),
-            tx=np.concatenate([-ny, -my]),
-            ty=np.concatenate([nx, mx]),
-            arm_i=np.concatenate([arm_i, arm_b]),
-            arm_j=np.concatenate([arm_j, np.zeros(len(g))]),
-            stiffness=stiffnesses,
+            i=both.i,
+            j=both.j,
+            tx=both.tx,
+            ty=both.ty,
+            arm_i=both.arm_i,
+            arm_j=both.arm_j,
+            stiffness=both.stiffness,
             cap=caps,
-            offset=np.concatenate([offset, offset_b]) + np.clip(remembered, -limit, limit),
+            offset=both.offset + np.clip(self._recall(both.key), -limit, limit),
             pairs=np.array([len(pairs.i)]),
             place=np.arange(len(packing)),
-            at_i=np.zeros(len(keys), dtype=np.uint32),
-            at_j=np.zeros(len(keys), dtype=np.uint32),
-            pull=np.zeros(len(keys)),
+            at_i=np.zeros(count, dtype=np.uint32),
+            at_j=np.zeros(count, dtype=np.uint32),
+            pull=np.zeros(count),
         )
-        return FrozenContacts(
-            terms=terms,
-            keys=keys,
-            primitive=np.concatenate([np.full(len(pairs.i), -1), bodies.primitive]),
-            x=np.concatenate([contact_x, body_x]),
-            y=np.concatenate([contact_y, body_y]),
-            dx=np.concatenate([pairs.dx, arm_b * mx]),
-            dy=np.concatenate([pairs.dy, arm_b * my]),
-        )
+        return FrozenContacts(terms, both.key, both.primitive, both.x, both.y, both.dx, both.dy)
 
     def end(self, frozen: FrozenContacts, packing: Packing, turned: Floats) -> FrictionForces:
         """Remember the slips of a relaxed packing whose grains turned by ``turned`` (N,) [rad]; the forces they stand for."""

@@ -9,7 +9,6 @@ an increment may be cut into any number of calls and takes the same course to th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +25,8 @@ from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
 from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point, RigidWorld
-from core.settings import LONGEST_STEP, Settings
+from core.settings import LONGEST_STEP
+from core.system import System
 
 
 @dataclass(frozen=True)
@@ -49,35 +49,12 @@ class Increment:
 class Quasistatic:
     """A packing among rigid bodies, driven increment by increment."""
 
-    def __init__(
-        self,
-        packing: Packing,
-        world: RigidWorld,
-        settings: Settings | None = None,
-        friction: Friction | None = None,
-        gravity: Point | None = None,
-        follow: Callable[[Packing, RigidWorld], None] | None = None,
-        relaxes: bool = True,
-        drag: float = 0.0,
-    ) -> None:
-        """``friction``, ``gravity`` [k/R] None: nothing of them is computed. Raises InputError if the step is too long.
-
-        With ``drag`` [k/R²], see ``Relaxation``, an increment is a step of slow motion even where no body moves.
-
-        ``follow`` is called when bodies have moved: it moves what hangs on them. Without ``relaxes`` it alone says where the
-        grains are and what shape they have; forces are then measured, and move nothing.
-        """
-        self.packing = packing
-        self.world = world
-        self.settings = settings or Settings()
-        _check_step(self.settings.step, packing)
-        _check_gravity(gravity, packing)
+    def __init__(self, system: System) -> None:
+        """Works on ``system``, which whoever drives it may change between two increments. Raises InputError as ``look_again``."""
+        self.system = system
+        self._check()
+        packing, world = system.packing, system.world
         self.reactions = np.zeros((len(world.bodies), 3))
-        self.friction = friction
-        self.gravity = gravity
-        self._follow = follow
-        self._relaxes = relaxes
-        self.drag = drag
         self.latest: Increment | None = None  # as it ended
         self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
@@ -97,8 +74,23 @@ class Quasistatic:
         self._pulled: dict[str, Point] = {}
         self._stopped: dict[str, str] = {}
         self._asked: tuple[dict[str, Point], PeriodicBox | None] = {}, None
-        self._push = Push(self.settings.hand_strength, 0.0)
+        self._push = Push(self.system.solver.hand_strength, 0.0)
         self._spent = 0  # force evaluations of the tries before this one
+
+    @property
+    def packing(self) -> Packing:
+        """The grains."""
+        return self.system.packing
+
+    @property
+    def world(self) -> RigidWorld:
+        """The bodies."""
+        return self.system.world
+
+    @property
+    def friction(self) -> Friction | None:
+        """What contacts remember, if there is friction."""
+        return self.system.friction
 
     @property
     def busy(self) -> bool:
@@ -117,39 +109,36 @@ class Quasistatic:
             own_motion=self._own_motion.copy(),
             last_moved=dict(self._last_moved),
             friction=None if self.friction is None else self.friction.copy(),
-            settings=self.settings,
-            gravity=self.gravity,
-            drag=self.drag,
+            solver=self.system.solver,
+            gravity=self.system.gravity,
+            drag=self.system.drag,
         )
 
     def restore(self, state: EngineState) -> None:
         """Be as when ``state`` was saved: what follows is the same to the last bit."""
-        self.packing = state.packing.copy()
-        place_bodies(self.world, state.bodies)
+        system = self.system
+        system.packing = state.packing.copy()
+        place_bodies(system.world, state.bodies)
         self.reactions = state.reactions.copy()
         self._last, self._own_motion = state.last.copy(), state.own_motion.copy()
         self._last_moved = dict(state.last_moved)
-        self.friction = None if state.friction is None else state.friction.copy()
-        self.settings, self.gravity, self.drag = state.settings, state.gravity, state.drag
+        system.friction = None if state.friction is None else state.friction.copy()
+        system.solver, system.gravity, system.drag = state.solver, state.gravity, state.drag
         self._frozen = self._relaxation = None
         self._contacts = self.contacts()
 
-    def adjust(
-        self, settings: Settings, friction: float, gravity: Point | None, drag: float
-    ) -> None:
-        """Go on with other settings, and with what the packing's material has become. Raises InputError as for a new one."""
+    def look_again(self) -> None:
+        """What the system has, or what its packing is made of, was changed. Raises InputError for what cannot go on so."""
         if self._relaxation is not None:
             raise RuntimeError("nothing can be changed in the middle of an increment")
-        _check_step(settings.step, self.packing)
-        _check_gravity(gravity, self.packing)
-        self.settings, self.gravity, self.drag = settings, gravity, drag
-        if friction == 0.0:
-            self.friction = self._frozen = None
-        elif self.friction is None:
-            self.friction = Friction(friction, len(self.packing))
-        else:
-            self.friction.coefficient = friction
+        self._check()
+        if self.friction is None:
+            self._frozen = None
         self._contacts = self.contacts()
+
+    def _check(self) -> None:
+        _check_step(self.system.solver.step, self.packing)
+        _check_gravity(self.system.gravity, self.packing)
 
     def begin(self, targets: dict[str, Point], box: PeriodicBox | None = None) -> None:
         """Move each named body one step towards its target and start to relax. With no targets: relax where things stand.
@@ -160,7 +149,7 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
         self._asked = dict(targets), box
-        self._push, self._spent = Push(self.settings.hand_strength, -math.inf), 0
+        self._push, self._spent = Push(self.system.solver.hand_strength, -math.inf), 0
         state, cell, placement = self.packing.state.copy(), self.packing.box, self.world.placement()
         try:
             self._begin(targets, box)
@@ -172,43 +161,45 @@ class Quasistatic:
     def _begin(self, targets: dict[str, Point], box: PeriodicBox | None) -> None:
         self._moved, self._stopped = {}, {}
         self._pulled = {name: self._way_of_hand(name, target) for name, target in targets.items()}
-        if self._relaxes and part_coincident(self.packing, (self._contacts or self.contacts())[0]):
+        if self.system.relaxes and part_coincident(
+            self.packing, (self._contacts or self.contacts())[0]
+        ):
             self._contacts = None
-        if self._relaxes:
+        if self.system.relaxes:
             # Before anything moves: a prediction that flattens a grain would make it look deep already.
             touched = (self._contacts or self.contacts())[1]
-            self._deep = deep_grains(self.packing, touched, self.settings.step)
+            self._deep = deep_grains(self.packing, touched, self.system.solver.step)
         self._placement = self.world.placement()
         rows_then = self.world.primitives()[0]
         self._move_bodies(targets)
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
-        if self._follow is not None:
-            self._follow(self.packing, self.world)
-        stepped = self._box_towards(box, self._push.share * self.settings.step)
+        if self.system.follow is not None:
+            self.system.follow(self.packing, self.world)
+        stepped = self._box_towards(box, self._push.share * self.system.solver.step)
         if box is not None and self._push.share < 1.0:
             self._stopped[CELL] = "force limit"
         self._freeze_friction(stepped)
         self._squeeze(stepped)
         self._carried = self.packing.state[:2].copy()
-        if self._relaxes and self.drag == 0.0:
+        if self.system.relaxes and self.system.drag == 0.0:
             self._predict()
         primitives, _ = self.world.primitives()
-        if self._relaxes:
+        if self.system.relaxes:
             ways = self._start, self.packing.state, rows_then, primitives
             self._through = passed_faces(touched, *ways)
-        settings = self.settings
+        solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
             self.packing,
             primitives,
             None if self._frozen is None else self._frozen.terms,
-            self.gravity,
-            self.drag,
-            tolerance=settings.tolerance,
-            force_floor=settings.force_floor * largest,
-            skin=settings.skin,
-            max_iterations=settings.max_iterations,
-            threads=settings.threads,
+            self.system.gravity,
+            self.system.drag,
+            tolerance=solver.tolerance,
+            force_floor=solver.force_floor * largest,
+            skin=solver.skin,
+            max_iterations=solver.max_iterations,
+            threads=solver.threads,
         )
 
     def relax(self, max_iterations: int) -> Increment | None:
@@ -216,15 +207,18 @@ class Quasistatic:
         relaxation = self._relaxation
         if relaxation is None:
             raise RuntimeError("no increment is begun")
-        report = relaxation.run(max_iterations if self._relaxes else 1)
-        if not self._relaxes and report.reason in (StopReason.BUDGET, StopReason.ITERATION_LIMIT):
+        report = relaxation.run(max_iterations if self.system.relaxes else 1)
+        if not self.system.relaxes and report.reason in (
+            StopReason.BUDGET,
+            StopReason.ITERATION_LIMIT,
+        ):
             report = replace(report, reason=StopReason.CONVERGED, residual=0.0)
         if report.reason is StopReason.BUDGET:
             return None
         contacts = None
         unbalanced = np.zeros(len(self.packing))
         turned = None if self.friction is None else relaxation.turned()
-        relaxed = self._relaxes and report.reason not in FAILED
+        relaxed = self.system.relaxes and report.reason not in FAILED
         if relaxed:
             relaxation.write_back()
             unbalanced = np.hypot(*relaxation.forces()[:2])
@@ -232,7 +226,7 @@ class Quasistatic:
         self._relaxation = relaxation = None  # its arrays make room for those of the contacts
         if relaxed:
             contacts = self.contacts()
-            deep = deep_grains(self.packing, contacts[1], self.settings.step)
+            deep = deep_grains(self.packing, contacts[1], self.system.solver.step)
             if self._through or deep - self._deep:
                 report = replace(report, reason=StopReason.SUNK)
         good = report.reason not in FAILED
@@ -243,7 +237,7 @@ class Quasistatic:
         if self._limited and self._tries_again(contacts if good else None, forces):
             self._spent += report.iterations
             self._take_back()
-            self.friction = remembered
+            self.system.friction = remembered
             self._begin(*self._asked)
             return None
         report = replace(report, iterations=self._spent + report.iterations)
@@ -262,7 +256,7 @@ class Quasistatic:
     def _limited(self) -> bool:
         """True if a hand of limited strength is at work in this increment."""
         targets, box = self._asked
-        return math.isfinite(self.settings.hand_strength) and bool(targets or box is not None)
+        return math.isfinite(self.system.solver.hand_strength) and bool(targets or box is not None)
 
     def _remembered(self) -> Friction | None:
         """What frictional contacts remember, where the increment may have to be done again."""
@@ -280,17 +274,17 @@ class Quasistatic:
 
     def _move_bodies(self, targets: dict[str, Point]) -> None:
         """Each body towards its target, by the share of a step that is tried, unless the grains push it harder than the hand."""
-        share, settings = self._push.share, self.settings
+        share, solver = self._push.share, self.system.solver
         forces = {}
         for name, target in targets.items():
             pull = self._pulled[name]
             forces[name] = force_on_body(self._push_on(name, self.reactions), pull)
             if share == 0.0:
                 moved, stopped = (0.0, 0.0), None
-            elif forces[name] > settings.hand_strength * (1.0 + SLACK):
-                moved, stopped = self.world.give_way(name, pull, settings.step), "force limit"
+            elif forces[name] > solver.hand_strength * (1.0 + SLACK):
+                moved, stopped = self.world.give_way(name, pull, solver.step), "force limit"
             else:
-                moved, stopped = self.world.advance(name, target, share * settings.step)
+                moved, stopped = self.world.advance(name, target, share * solver.step)
             self._moved[name] = moved
             if share < 1.0:
                 stopped = "force limit"
@@ -327,7 +321,7 @@ class Quasistatic:
         if self._pulled:
             pushes = (self._push_on(name, reactions) for name in self._pulled)
             return max(map(force_on_body, pushes, self._pulled.values()))
-        box, asked = self._start_box, self._box_towards(self._asked[1], self.settings.step)
+        box, asked = self._start_box, self._box_towards(self._asked[1], self.system.solver.step)
         if box is None or asked is None or self._asked[1] is None:
             return math.nan
         ends = [(box.width, asked.width), (box.height, asked.height), (box.shift, asked.shift)]
@@ -372,7 +366,7 @@ class Quasistatic:
         """Take the grains marked in ``gone`` (N,) out of the packing."""
         if self._relaxation is not None:
             raise RuntimeError("grains cannot leave in the middle of an increment")
-        self.packing = self.packing.select(~gone)
+        self.system.packing = self.packing.select(~gone)
         self._last = np.ascontiguousarray(self._last[:, ~gone])
         self._own_motion = np.ascontiguousarray(self._own_motion[:, ~gone])
         self._contacts = self.contacts()
@@ -383,7 +377,7 @@ class Quasistatic:
         """Go on with other grains, or after bodies have come or gone; ``friction`` knows of both already."""
         if self._relaxation is not None:
             raise RuntimeError("grains and bodies cannot change in the middle of an increment")
-        self.packing = packing
+        self.system.packing = packing
         self._placement = self.world.placement()
         self._last = np.zeros_like(packing.state)
         self._own_motion = np.zeros_like(packing.state[:2])

@@ -89,24 +89,12 @@ class Relaxation:
         self.iterations = 0
         count = len(packing)
         self._box = None if packing.box is None else packing.box.kernel_form()
-        if packing.box is not None and count:
-            largest = float(packing.rest_radius.max())
-            reach = 2.0 * float(packing.semi_axes[0].max()) + skin * largest
-            if min(packing.box.width, packing.box.height) < 2.0 * reach:
-                raise InputError(
-                    f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"
-                )
+        _check_box(packing, skin)
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
         self._friction = friction
-        if not drag >= 0.0:
-            raise InputError("the drag must be 0 or more")
-        self._weight = None
-        if gravity is not None or drag > 0.0:
-            pull = (0.0, 0.0) if gravity is None else gravity
-            start = packing.state[:2].copy()
-            self._weight = fire.Weight(float(pull[0]), float(pull[1]), float(drag), start)
+        self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
         self.threads = threads
@@ -125,12 +113,12 @@ class Relaxation:
         )
         control = fire.fresh_control(self._limits.dt_max)
         if not count:
-            control[fire.START_ENERGY] = 0.0
+            control["start_energy"] = 0.0
         self._minimizer = _minimizer(packing, friction is not None, control)
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
         if not np.all(np.isfinite(packing.state)):
             # The neighbour search would lose such a grain without a word.
-            control[fire.ENERGY] = control[fire.RESIDUAL] = np.nan
+            control["energy"] = control["residual"] = np.nan
             self._reason = StopReason.NOT_FINITE
 
     def run(self, max_iterations: int) -> Report:
@@ -164,13 +152,13 @@ class Relaxation:
 
     def report(self) -> Report:
         """How it stands now."""
-        control = self._minimizer.control
+        control = self._minimizer.control[0]
         return Report(
             reason=self._reason,
-            energy=float(control[fire.ENERGY]),
-            start_energy=float(control[fire.START_ENERGY]),
-            residual=float(control[fire.RESIDUAL]),
-            mean_contact_force=float(control[fire.SCALE]),
+            energy=float(control["energy"]),
+            start_energy=float(control["start_energy"]),
+            residual=float(control["residual"]),
+            mean_contact_force=float(control["scale"]),
             iterations=self.iterations,
         )
 
@@ -233,7 +221,30 @@ class Relaxation:
             )
 
 
-def _minimizer(packing: Packing, spins: bool, control: NDArray[np.float64]) -> fire.Minimizer:
+def _check_box(packing: Packing, skin: float) -> None:
+    """Raises InputError where a grain could meet two images of another."""
+    if packing.box is None or not len(packing):
+        return
+    reach = 2.0 * float(packing.semi_axes[0].max()) + skin * float(packing.rest_radius.max())
+    if min(packing.box.width, packing.box.height) < 2.0 * reach:
+        raise InputError(
+            f"the periodic box is too small: each side must be at least {2.0 * reach:.3g} R for these grains"
+        )
+
+
+def _weight(
+    packing: Packing, gravity: tuple[float, float] | None, drag: float
+) -> fire.Weight | None:
+    """None where nothing pulls. Raises InputError for a drag that drives."""
+    if not drag >= 0.0:
+        raise InputError("the drag must be 0 or more")
+    if gravity is None and drag == 0.0:
+        return None
+    x, y = (0.0, 0.0) if gravity is None else gravity
+    return fire.Weight(float(x), float(y), float(drag), packing.state[:2].copy())
+
+
+def _minimizer(packing: Packing, spins: bool, control: NDArray[np.void]) -> fire.Minimizer:
     count = len(packing)
     nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
     rest_area = packing.rest_radius**2

@@ -10,7 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from core import contacts, fire, kernel_cache, neighbors, observables, rigid_contacts
-from core.friction import Friction
+from core.arrays import Floats
+from core.friction import Friction, FrictionTerms
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation
 
@@ -28,15 +29,7 @@ def compile_kernels(
     packing = Packing([0.0, 1.9, 3.8], [0.0, 0.1, 0.0], box=box)
     rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
     primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
-    terms = None
-    if friction:
-        pairs = observables.grain_contacts(packing)
-        touching = observables.body_contacts(packing, primitives)
-        owner, still = np.zeros(len(primitives), dtype=np.int64), np.zeros((1, 3))
-        memory = Friction(0.5, len(packing))
-        frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
-        memory.end(frozen, packing, np.zeros(len(packing)))
-        terms = frozen.terms
+    terms = _friction_terms(packing, primitives) if friction else None
     relaxation = Relaxation(
         packing,
         primitives,
@@ -47,28 +40,10 @@ def compile_kernels(
     )
     m, form, body = relaxation._minimizer, relaxation._box, relaxation._rigid
     weight = relaxation._weight
-
-    def forces() -> None:
-        rows = m.force
-        contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
-        lists = m.lists
-        contacts.add_contact_forces(
-            0,
-            rows.shape[1],
-            m.state,
-            m.support,
-            rows,
-            lists.width,
-            lists.offset,
-            lists.neighbor,
-            lists.stiffness,
-            form,
-        )
-
     steps: list[tuple[float, Callable[[], object]]] = [
         (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
         (0.10, lambda: fire.relist(m, form, body, terms, 0.1)),
-        (0.15, forces),
+        (0.15, lambda: _contact_forces(m, form)),
         (0.15, lambda: fire.evaluate(m, form, body, terms, weight, None)),
         (0.10, lambda: fire.mean_contact_force(m, form, body)),
         (0.20, lambda: relaxation.run(10)),
@@ -83,3 +58,22 @@ def compile_kernels(
         if progress is not None:
             progress(min(done, 1.0))
     kernel_cache.prune()
+
+
+def _friction_terms(packing: Packing, primitives: Floats) -> FrictionTerms:
+    """Of an increment in which nothing moves, begun and ended."""
+    pairs = observables.grain_contacts(packing)
+    touching = observables.body_contacts(packing, primitives)
+    owner, still = np.zeros(len(primitives), dtype=np.int64), np.zeros((1, 3))
+    memory = Friction(0.5, len(packing))
+    frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
+    memory.end(frozen, packing, np.zeros(len(packing)))
+    return frozen.terms
+
+
+def _contact_forces(m: fire.Minimizer, box: tuple[float, ...] | None) -> None:
+    """Those between grains alone."""
+    rows, lists = m.force, m.lists
+    contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
+    slots = lists.width, lists.offset, lists.neighbor, lists.stiffness
+    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.avalanches import force_changes, participation, stress_drops, weights
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
@@ -25,7 +25,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
@@ -71,25 +70,25 @@ class Avalanches(Scene):
         *(replace(p, default=1e-4) if p.name == "tolerance" else p for p in SOLVER),
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        del values
+    def ingredients(self, settings: Values) -> Ingredients:
+        del settings
         return Ingredients(rigid=False, periodic=True)
 
-    def steps(self, values: Values) -> int:
+    def steps(self, settings: Values) -> int:
         # The cell is not built yet; under little pressure its packing fraction is near that of jamming, 0.84.
-        side = math.sqrt(float(values["grains"]) * recipe(values, "mixed").mean_area() / 0.84)
-        return max(1, round(float(values["strain"]) * side / float(values["step"])))
+        side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
+        return max(1, round(float(settings["strain"]) * side / float(settings["step"])))
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         packed = pack(
-            recipe(values, packing),
+            recipe(settings, packing),
             seed=seed,
-            count=int(values["grains"]),
+            count=int(settings["grains"]),
             packing_fraction=0.86,
-            target_pressure=float(values["pressure"]),
-            tolerance=min(1e-3, float(values["tolerance"])),
+            target_pressure=float(settings["pressure"]),
+            tolerance=min(1e-3, float(settings["tolerance"])),
             progress=progress,
         )
         assert packed.box is not None
@@ -110,7 +109,7 @@ class Avalanches(Scene):
         return Setup(
             packing=packed,
             world=RigidWorld(),
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("box", "image above", (1.0, 0.0), GRAB),),
             bounds=(-1.0, -1.0, side + 1.0, side + 1.0),
             outline=[(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)],
@@ -120,19 +119,19 @@ class Avalanches(Scene):
             curve=Curve("shear strain", "shear stress [k]", shear_strain, shear_stress),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         side = setup.outline[1][0]
         shift = (increment + 1) * setup.solver.step
-        if shift > float(values["strain"]) * side + 1e-9:
+        if shift > float(settings["strain"]) * side + 1e-9:
             return None
         return {"box": (0.5 * side + shift, side)}
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         if latest.before is None or latest.curve.shape[1] < 2:
             return Remarks()
         (before, now), (high, low) = latest.curve[:, -2:]
         fall = (high - low) * np.sign(now - before)
-        if fall <= LEAST_DROP * float(values["pressure"]):
+        if fall <= LEAST_DROP * float(settings["pressure"]):
             return Remarks()
         weight = taking_part(setup.packing, latest.before, latest.now)
         share = participation(weight)
@@ -142,7 +141,7 @@ class Avalanches(Scene):
             count=share * len(weight),
             total=len(weight),
         )
-        large = fall > ANNOUNCED * float(values["pressure"])
+        large = fall > ANNOUNCED * float(settings["pressure"])
         return Remarks((text,), weight > weight.mean(), {"avalanche": text} if large else {})
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core import observables
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
@@ -20,7 +20,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
@@ -66,26 +65,26 @@ class BiaxialPeriodic(Scene):
         *SOLVER,
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        del values
+    def ingredients(self, settings: Values) -> Ingredients:
+        del settings
         return Ingredients(rigid=False, periodic=True)
 
-    def steps(self, values: Values) -> int:
+    def steps(self, settings: Values) -> int:
         # The box at the onset is not built yet; frictionless discs jam at 0.84, and a step too many does no harm.
-        side = math.sqrt(float(values["grains"]) * recipe(values, "mixed").mean_area() / 0.84)
-        shrink = side * (1.0 - math.sqrt(1.0 - float(values["strain"])))
-        return max(1, math.ceil(shrink / float(values["step"])))
+        side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
+        shrink = side * (1.0 - math.sqrt(1.0 - float(settings["strain"])))
+        return max(1, math.ceil(shrink / float(settings["step"])))
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         packed = pack(
-            recipe(values, packing),
+            recipe(settings, packing),
             seed=seed,
-            count=int(values["grains"]),
+            count=int(settings["grains"]),
             packing_fraction=0.84,
-            target_pressure=ONSET * float(values["contact_stiffness"]),
-            tolerance=min(1e-3, float(values["tolerance"])),
+            target_pressure=ONSET * float(settings["contact_stiffness"]),
+            tolerance=min(1e-3, float(settings["tolerance"])),
             progress=progress,
         )
         assert packed.box is not None
@@ -99,7 +98,7 @@ class BiaxialPeriodic(Scene):
         return Setup(
             packing=packed,
             world=RigidWorld(),
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("box", "corner of the box", (-math.sqrt(0.5), -math.sqrt(0.5)), GRAB),),
             bounds=(-1.0, -1.0, side + 1.0, side + 1.0),
             outline=[(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)],
@@ -112,17 +111,17 @@ class BiaxialPeriodic(Scene):
             ),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         full = setup.outline[1][0]
-        end = full * math.sqrt(1.0 - float(values["strain"]))
+        end = full * math.sqrt(1.0 - float(settings["strain"]))
         side = full - (increment + 1) * setup.solver.step
         if side <= end - setup.solver.step + 1e-9:
             return None
         side = max(side, end)
         return {"box": (side, side)}
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
-        del values
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
+        del settings
         everyone, backbone = observables.coordination(setup.packing, latest.now.grain_contacts)
         text = "{backbone:.2f} contacts a grain, {everyone:.2f} with rattlers"
         return Remarks((Text(text, backbone=backbone, everyone=everyone),))

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from core import observables
-from core.generate import Recipe, pack
+from core.generate import Progress, Recipe, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.parameter import Parameter
@@ -25,11 +25,11 @@ from scenes.scene import (
     Check,
     Curve,
     Handle,
-    Progress,
     Scene,
     Setup,
     Track,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -71,11 +71,11 @@ class BiaxialPress(Scene):
     )
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        grains = recipe(values, packing)
-        fraction = float(values["packing_fraction"])
-        side = math.sqrt(float(values["grains"]) * grains.mean_area() / fraction)
+        grains = recipe(settings, packing)
+        fraction = float(settings["packing_fraction"])
+        side = math.sqrt(float(settings["grains"]) * grains.mean_area() / fraction)
         half = side / math.sqrt(2.0)
         outline: list[Point] = [(0.0, 0.0), (half, half), (0.0, 2.0 * half), (-half, half)]
         brim = half + BRIM
@@ -94,11 +94,11 @@ class BiaxialPress(Scene):
         return Setup(
             packing=packed,
             world=world,
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("lid", "lid", (0.0, -1.0), 0.3 * half),),
             bounds=(-brim - margin, -2.0 * margin, brim + margin, 2.0 * half + 2.0 * LID),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
             curve=Curve(
                 "less area [%]",
                 "pressure [k]",
@@ -107,19 +107,19 @@ class BiaxialPress(Scene):
             ),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         lid = setup.world["lid"]
-        end = way_down(_side(setup), float(values["compression"]))
+        end = way_down(_side(setup), float(settings["compression"]))
         depth = (increment + 1) * setup.solver.step
         if depth > end + 1e-9:
             return None
         return {"lid": (lid.home[0], lid.home[1] - depth)}
 
-    def steps(self, values: Values) -> int:
-        fraction = float(values["packing_fraction"])
-        side = math.sqrt(float(values["grains"]) * Recipe().mean_area() / fraction)
+    def steps(self, settings: Values) -> int:
+        fraction = float(settings["packing_fraction"])
+        side = math.sqrt(float(settings["grains"]) * Recipe().mean_area() / fraction)
         return math.floor(
-            way_down(side, float(values["compression"])) / float(values["step"]) + 1e-6
+            way_down(side, float(settings["compression"])) / float(settings["step"]) + 1e-6
         )
 
     def region(self, setup: Setup) -> list[Point]:
@@ -181,7 +181,7 @@ def _balance(setup: Setup) -> Check:
     contacts = observables.body_contacts(setup.packing, primitives)
     reactions = observables.reactions(contacts, owner, setup.world.placement())
     name = "the floor bears what the lid presses"
-    if setup.friction > 0.0:
+    if setup.friction is not None:
         return Check(name, None, "with friction its faces bear tangential forces too")
     forces = np.concatenate([pairs.normal_force, contacts.normal_force])
     scale = max(float(np.mean(forces)) if len(forces) else 0.0, setup.solver.force_floor)

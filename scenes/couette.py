@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core import observables
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
@@ -23,12 +23,12 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
     Track,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -94,19 +94,21 @@ class Couette(Scene):
         *SOLVER,
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        return Ingredients(periodic=True, friction=float(values["friction"]) > 0.0)
+    def ingredients(self, settings: Values) -> Ingredients:
+        return Ingredients(periodic=True, friction=float(settings["friction"]) > 0.0)
 
-    def steps(self, values: Values) -> int:
-        if int(values["protocol"]) != STEADY:
-            return 4 * _quarter(values) * int(values["cycles"])
-        return max(1, round(float(values["strain"]) * _cell(values)[2] / float(values["step"])))
+    def steps(self, settings: Values) -> int:
+        if int(settings["protocol"]) != STEADY:
+            return 4 * _quarter(settings) * int(settings["cycles"])
+        return max(
+            1, round(float(settings["strain"]) * _cell(settings)[2] / float(settings["step"]))
+        )
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        grains = recipe(values, packing)
-        teeth, width, height = _cell(values)
+        grains = recipe(settings, packing)
+        teeth, width, height = _cell(settings)
         depth = NOTCH - TIP
         world = RigidWorld(
             [
@@ -134,7 +136,7 @@ class Couette(Scene):
             world=world,
             box=PeriodicBox(width),
             count=GRAINS_A_TOOTH * teeth,
-            tolerance=min(1e-3, float(values["tolerance"])),
+            tolerance=min(1e-3, float(settings["tolerance"])),
             progress=progress,
         )
         top = world["upper plate"]
@@ -147,11 +149,11 @@ class Couette(Scene):
         return Setup(
             packing=packed,
             world=world,
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("upper plate", "upper plate", (1.0, 0.0), 3.0),),
             bounds=(0.0, -depth - 2.0 * DISC, width, height + depth + 2.0 * DISC),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
             reach=reach,
             curve=Curve(
                 "shear strain",
@@ -161,20 +163,22 @@ class Couette(Scene):
             ),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
-        if increment >= self.steps(values):
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
+        if increment >= self.steps(settings):
             return None
-        _, _, height = _cell(values)
+        _, _, height = _cell(settings)
         top = setup.world["upper plate"]
-        return {"upper plate": (top.home[0] + height * _strain(values, increment + 1), top.home[1])}
+        return {
+            "upper plate": (top.home[0] + height * _strain(settings, increment + 1), top.home[1])
+        }
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         if int(after["protocol"]) == STEADY:
             return super().place_in_drive(increment, before, after)
         return round(increment * _quarter(after) / _quarter(before))
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
-        width = _cell(values)[1]
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
+        width = _cell(settings)[1]
         shear, normal = plate_stresses(setup.world, width, latest.now)
         if normal <= 0.0:
             return Remarks(("the grains do not reach from plate to plate: nothing holds",))
@@ -191,15 +195,15 @@ class Couette(Scene):
         return [*super().checks(setup, track), _stresses_agree(setup)]
 
 
-def _cell(values: Values) -> tuple[int, float, float]:
+def _cell(settings: Values) -> tuple[int, float, float]:
     """Teeth of a plate, width of the cell, and height from the lower to the upper tips' centres [R]."""
-    teeth = int(values["grains"]) // GRAINS_A_TOOTH
+    teeth = int(settings["grains"]) // GRAINS_A_TOOTH
     width = TOOTH * teeth
-    grains = GRAINS_A_TOOTH * teeth * recipe(values, "mixed").mean_area()
+    grains = GRAINS_A_TOOTH * teeth * recipe(settings, "mixed").mean_area()
     # What is open of a notch under the line of the tips: the circle's segment less one half of each disc.
     segment = NOTCH**2 * (TIP_ANGLE - math.sin(TIP_ANGLE) * math.cos(TIP_ANGLE))
     notch = segment - 0.5 * TOOTH_DISCS * math.pi * DISC**2
-    height = (grains / float(values["packing_fraction"]) - 2.0 * teeth * notch) / width
+    height = (grains / float(settings["packing_fraction"]) - 2.0 * teeth * notch) / width
     return teeth, width, height
 
 
@@ -225,18 +229,18 @@ def plate_stresses(world: RigidWorld, width: float, increment: Increment) -> tup
     return plate_stress(increment.reactions[world.index("upper plate")], width)
 
 
-def _quarter(values: Values) -> int:
+def _quarter(settings: Values) -> int:
     """Increments in a quarter of a cycle."""
-    way = AMPLITUDE[int(values["protocol"])] * _cell(values)[2]
-    return max(QUARTER, math.ceil(way / float(values["step"])))
+    way = AMPLITUDE[int(settings["protocol"])] * _cell(settings)[2]
+    return max(QUARTER, math.ceil(way / float(settings["step"])))
 
 
-def _strain(values: Values, increments: int) -> float:
+def _strain(settings: Values, increments: int) -> float:
     """Shear strain that the script asks for after so many increments."""
-    protocol = int(values["protocol"])
+    protocol = int(settings["protocol"])
     if protocol == STEADY:
-        return increments * float(values["step"]) / _cell(values)[2]
-    phase = increments / _quarter(values) % 4.0
+        return increments * float(settings["step"]) / _cell(settings)[2]
+    phase = increments / _quarter(settings) % 4.0
     return AMPLITUDE[protocol] * (
         phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
     )
@@ -245,7 +249,7 @@ def _strain(values: Values, increments: int) -> float:
 def _stresses_agree(setup: Setup) -> Check:
     """The paper's two ways to the stress: the force on the plates, and the sum over the contacts."""
     name = "normal stress from the plates' force and from the contacts agree within 10 %"
-    if setup.friction > 0.0:
+    if setup.friction is not None:
         return Check(name, None, "contacts are measured without their friction")
     primitives, owner = setup.world.primitives()
     contacts = observables.body_contacts(setup.packing, primitives)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from core import observables
-from core.generate import Recipe
+from core.generate import Progress, Recipe
 from core.packing import Packing
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
@@ -25,13 +25,13 @@ from scenes.scene import (
     Curve,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
     Track,
     Values,
     below_height,
+    friction,
     hand,
     solver,
 )
@@ -94,26 +94,26 @@ class GrainRow(Scene):
     )
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         del progress  # takes no time
-        count, gap = int(values["grains"]), float(values["gap"])
+        count, gap = int(settings["grains"]), float(settings["gap"])
         grains = Recipe(
             kind=packing,
-            auxetic_fraction=float(values["auxetic_fraction"]),
-            regular_poisson_ratio=float(values["regular_poisson_ratio"]),
-            auxetic_poisson_ratio=float(values["auxetic_poisson_ratio"]),
+            auxetic_fraction=float(settings["auxetic_fraction"]),
+            regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
+            auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
             small_fraction=0.0,
         )
         radius, nu = grains.grains(count, np.random.default_rng(seed))
         half_width = count + 0.5 * (count + 1) * gap
         x = -half_width + gap + 1.0 + (2.0 + gap) * np.arange(count)
         world = _box(half_width)
-        settings = solver(values)
+        careful = solver(settings)
         return Setup(
-            packing=Packing(x, 1.0, radius, nu, float(values["contact_stiffness"])),
+            packing=Packing(x, 1.0, radius, nu, float(settings["contact_stiffness"])),
             world=world,
-            solver=settings,
+            solver=careful,
             handles=(Handle("piston", "piston", (0.0, -1.0), half_width),),
             bounds=(-half_width - WALL, -WALL, half_width + WALL, 2.0 + LIFT + WALL),
             outline=[
@@ -122,7 +122,7 @@ class GrainRow(Scene):
                 (half_width, 2.0 + LIFT),
                 (-half_width, 2.0 + LIFT),
             ],
-            friction=float(values["friction"]),
+            friction=friction(settings, len(x)),
             curve=Curve(
                 "compression [% of a diameter]",
                 "sideways force on the walls [k R]",
@@ -134,19 +134,19 @@ class GrainRow(Scene):
     def region(self, setup: Setup) -> list[Point]:
         return below_height(setup.outline, setup.world["piston"].position[1])
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         piston = setup.world["piston"]
         depth = (increment + 1) * setup.solver.step
-        if depth > 2.0 * float(values["compression"]) + 1e-9:
+        if depth > 2.0 * float(settings["compression"]) + 1e-9:
             return None
         return {"piston": (piston.home[0], piston.home[1] - depth)}
 
-    def steps(self, values: Values) -> int:
-        return math.floor(2.0 * float(values["compression"]) / float(values["step"]) + 1e-6)
+    def steps(self, settings: Values) -> int:
+        return math.floor(2.0 * float(settings["compression"]) / float(settings["step"]) + 1e-6)
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """How much room there is between the grains, and what part of the piston's force goes sideways."""
-        del values
+        del settings
         down = -float(latest.now.reactions[setup.world.index("floor"), 1])
         if down <= 0.0:
             return Remarks()
@@ -232,7 +232,7 @@ def _walls_balance(setup: Setup) -> Check:
     """Without friction nothing else acts sideways."""
     name = "both walls feel the same force"
     left, right = _wall_forces(setup)
-    if setup.friction > 0.0:
+    if setup.friction is not None:
         return Check(name, None, "with friction floor and piston hold some of it")
     allowed = len(setup.packing) * setup.solver.tolerance * max(left, right, 1.0)
     return Check(name, abs(left - right) <= allowed, f"{left:.4g} and {right:.4g} k R")
@@ -258,7 +258,7 @@ def _poisson_effect(setup: Setup, track: Track) -> Check:
     strain = 0.01 * float(track.stroke[first])
     count = len(setup.packing)
     gapless = setup.outline[1][0] <= count * (1.0 + 1e-12)
-    if np.any(nu != nu[0]) or not gapless or setup.friction > 0.0:
+    if np.any(nu != nu[0]) or not gapless or setup.friction is not None:
         return Check(name, None, "for rows of one kind without gaps and friction")
     expected = expected_slope(float(nu[0]), float(setup.packing.contact_stiffness[0]), count)
     slope = float(track.force[first]) / (2.0 * strain)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.friction import Friction
-from core.generate import pack
+from core.generate import Progress, pack
 from core.packing import Packing
 from core.quasistatic import Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
@@ -31,12 +31,12 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
     Track,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -106,20 +106,20 @@ class GravityHopper(Scene):
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        return Ingredients(friction=float(values["friction"]) > 0.0, gravity=True)
+    def ingredients(self, settings: Values) -> Ingredients:
+        return Ingredients(friction=float(settings["friction"]) > 0.0, gravity=True)
 
-    def validate(self, values: Values) -> None:
-        Shape(values).check(LEAST_CHANNEL)
+    def validate(self, settings: Values) -> None:
+        Shape(settings).check(LEAST_CHANNEL)
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        shape = Shape(values)
+        shape = Shape(settings)
         half_width, neck, lip = shape.half_width, shape.neck, (shape.lip_x, shape.lip_y)
         top = neck + shape.channel
-        gravity, drag = _pull(values)
-        brim = top + ROOM + half_width * abs(math.tan(math.radians(float(values["tilt"]))))
+        gravity, drag = _pull(settings)
+        brim = top + ROOM + half_width * abs(math.tan(math.radians(float(settings["tilt"]))))
         right: list[Point] = [lip, (half_width, neck), (half_width, brim)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
         full: list[Point] = [
@@ -149,7 +149,7 @@ class GravityHopper(Scene):
         lid = wall("lid", [(half_width, top), (-half_width, top)], WALL)
         gate = wall("gate", [(-lip[0], lip[1]), lip], WALL)
         packed = pack(
-            recipe(values, packing),
+            recipe(settings, packing),
             seed=seed,
             outline=full,
             world=RigidWorld([*walls, lid, gate]),
@@ -159,22 +159,22 @@ class GravityHopper(Scene):
         return Setup(
             packing=packed,
             world=RigidWorld([funnel]),
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("funnel", "funnel", (1.0, 0.0), 3.0),),
             bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
             outline=[*left, *right],
             outlet=shape.outlet(-DROP, beside=False),  # they are seen to sink on
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
             gravity=gravity,
             drag=drag,
             curve=Curve("increments", "grains that have left", None, None),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """Shaking now and then: pauses of ``REST`` increments, then ``TREMBLE`` of shaking."""
         if not len(setup.packing):
             return None
-        amplitude, funnel = float(values["shake"]), setup.world["funnel"]
+        amplitude, funnel = float(settings["shake"]), setup.world["funnel"]
         k = increment % (REST + TREMBLE) - REST
         if k < 0 or amplitude == 0.0:
             return {"funnel": funnel.home}
@@ -183,17 +183,17 @@ class GravityHopper(Scene):
         sway = phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
         return {"funnel": (funnel.home[0] + amplitude * sway, funnel.home[1])}
 
-    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
-        super().adjust(setup, values, changed)
+    def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
+        super().adjust(setup, settings, changed)
         if not changed.isdisjoint(("gravity", "fall")):
-            setup.gravity, setup.drag = _pull(values)
+            setup.gravity, setup.drag = _pull(settings)
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         del before, after  # it goes by pauses
         return increment
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
-        del values
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
+        del settings
         count = len(setup.packing)
         if not count:
             return Remarks(("empty",))
@@ -232,11 +232,11 @@ class GravityHopper(Scene):
         return super().general_checks(there, track)
 
 
-def _pull(values: Values) -> tuple[Point, float]:
+def _pull(settings: Values) -> tuple[Point, float]:
     """Gravity [k/R], and the drag [k/R²] that lets a free grain sink by ``fall``."""
-    tilt, weight = math.radians(float(values["tilt"])), float(values["gravity"])
+    tilt, weight = math.radians(float(settings["tilt"])), float(settings["gravity"])
     gravity = (weight * math.sin(tilt), -weight * math.cos(tilt))
-    return gravity, weight / float(values["fall"])
+    return gravity, weight / float(settings["fall"])
 
 
 def _nothing_hangs(setup: Setup, track: Track) -> Check:
@@ -248,10 +248,10 @@ def _nothing_hangs(setup: Setup, track: Track) -> Check:
     if not loose.any():
         return Check(name, True, f"all of {len(loose)} grains touch something")
     # The shaken funnel lets grains go at any time: those sink, or land, in one more increment.
-    friction = Friction(setup.friction, len(loose)) if setup.friction > 0.0 else None
-    further = Quasistatic(
-        setup.packing.copy(), setup.world, setup.solver, friction, setup.gravity, drag=setup.drag
-    )
+    friction = None
+    if setup.friction is not None:
+        friction = Friction(setup.friction.coefficient, len(loose))
+    further = Quasistatic(replace(setup, packing=setup.packing.copy(), friction=friction))
     further.begin({})
     while further.relax(1_000) is None:
         pass

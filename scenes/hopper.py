@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.arches import arch
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
@@ -22,12 +22,12 @@ from scenes.scene import (
     Holding,
     Latest,
     Outlet,
-    Progress,
     Remarks,
     Scene,
     Setup,
     Values,
     below_height,
+    friction,
     hand,
     recipe,
     solver,
@@ -85,18 +85,18 @@ class Hopper(Scene):
         *SOLVER,
     )
 
-    def validate(self, values: Values) -> None:
-        Shape(values).check(LEAST_CHANNEL)
+    def validate(self, settings: Values) -> None:
+        Shape(settings).check(LEAST_CHANNEL)
 
-    def steps(self, values: Values) -> int:
-        end = min(float(values["stroke"]), Shape(values).channel - 1.0)
-        return max(1, math.floor(end / float(values["step"]) + 1e-6))
+    def steps(self, settings: Values) -> int:
+        end = min(float(settings["stroke"]), Shape(settings).channel - 1.0)
+        return max(1, math.floor(end / float(settings["step"]) + 1e-6))
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        grains = recipe(values, packing)
-        shape = Shape(values)
+        grains = recipe(settings, packing)
+        shape = Shape(settings)
         half_width, neck, channel = shape.half_width, shape.neck, shape.channel
         top = neck + channel
         brim = top + LIFT + PISTON
@@ -110,29 +110,11 @@ class Hopper(Scene):
             left[1],
             left[2],
         ]
-        piston = RigidBody(
-            "piston",
-            "piston",
-            position=(0.0, top),
-            polygons=[
-                (
-                    (
-                        (-half_width, 0.0),
-                        (half_width, 0.0),
-                        (half_width, PISTON),
-                        (-half_width, PISTON),
-                    ),
-                    0.0,
-                )
-            ],
-            axis=(0.0, -1.0),
-            travel=(-LIFT, channel - 1.0),
-        )
         world = RigidWorld(
             [
                 wall("right wall", right, WALL),
                 wall("left wall", left, WALL),
-                piston,
+                _piston(half_width, top, channel - 1.0),
                 wall("gate", [(-shape.lip_x, shape.lip_y), (shape.lip_x, shape.lip_y)], WALL),
             ]
         )
@@ -148,17 +130,17 @@ class Hopper(Scene):
         return Setup(
             packing=packed,
             world=world,
-            solver=solver(values),
+            solver=solver(settings),
             handles=(Handle("piston", "piston", (0.0, -1.0), half_width),),
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
             outlet=shape.outlet(-LEFT_BEHIND, beside=True),
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         piston = setup.world["piston"]
-        end = min(float(values["stroke"]), piston.travel[1])
+        end = min(float(settings["stroke"]), piston.travel[1])
         depth = (increment + 1) * setup.solver.step
         if depth > end + 1e-9:
             return None
@@ -167,12 +149,12 @@ class Hopper(Scene):
     def region(self, setup: Setup) -> list[Point]:
         return below_height(setup.outline, setup.world["piston"].position[1])
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """Clogged: the force has risen over a stroke of one grain diameter while nothing left; an arch: over half of that.
 
         An avalanche: what held has broken, and the force falls.
         """
-        del values
+        del settings
         stroke, force = latest.curve[:, -1]
         since = float(stroke) - latest.last_exit[0]
         fall = sudden_fall(setup, latest)
@@ -205,6 +187,24 @@ class Hopper(Scene):
         return Holding(Text("an arch of {grains} grains holds", grains=int(found.sum())), found)
 
 
+def _piston(half_width: float, top: float, way: float) -> RigidBody:
+    """As wide as the channel, its face at ``top``, from where it can go down by ``way`` [R]."""
+    corners = (
+        (-half_width, 0.0),
+        (half_width, 0.0),
+        (half_width, PISTON),
+        (-half_width, PISTON),
+    )
+    return RigidBody(
+        "piston",
+        "piston",
+        position=(0.0, top),
+        polygons=[(corners, 0.0)],
+        axis=(0.0, -1.0),
+        travel=(-LIFT, way),
+    )
+
+
 def _arch(setup: Setup, latest: Latest) -> NDArray[np.bool_] | None:
     """The grains (N,) of the arch from the left to the right wall of the funnel, or None."""
     bodies = latest.now.body_contacts
@@ -217,17 +217,17 @@ def _arch(setup: Setup, latest: Latest) -> NDArray[np.bool_] | None:
 class Shape:
     """The hopper in numbers [R]. The lips are round, with their centres at y = 0; the orifice is the clear gap between them."""
 
-    def __init__(self, values: Values) -> None:
-        angle = math.radians(float(values["angle"]))
-        self.fraction = float(values["packing_fraction"])
-        self.half_width = 0.5 * float(values["width"])
-        self.opening = DIAMETER * float(values["orifice"])
+    def __init__(self, settings: Values) -> None:
+        angle = math.radians(float(settings["angle"]))
+        self.fraction = float(settings["packing_fraction"])
+        self.half_width = 0.5 * float(settings["width"])
+        self.opening = DIAMETER * float(settings["orifice"])
         # Where the face of the funnel begins, so that the clear gap between the round lips is exactly the orifice.
         self.lip_x = 0.5 * self.opening + 0.5 * WALL * (1.0 - math.sin(angle))
         self.lip_y = 0.5 * WALL * math.cos(angle)
         self.neck = self.lip_y + (self.half_width - self.lip_x) * math.tan(angle)
         funnel = (self.half_width + self.lip_x) * (self.neck - self.lip_y)
-        grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
+        grains = float(settings["grains"]) * recipe(settings, "mixed").mean_area()
         self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
 
     def outlet(self, y: float, beside: bool) -> Outlet:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.parameter import Parameter
@@ -16,11 +16,11 @@ from scenes.scene import (
     SOLVER,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -62,20 +62,22 @@ class Intruder(Scene):
         *SOLVER,
     )
 
-    def validate(self, values: Values) -> None:
-        self._box(values)
+    def validate(self, settings: Values) -> None:
+        self._box(settings)
 
-    def steps(self, values: Values) -> int:
-        radius = float(values["intruder_radius"])
-        room = self._box(values)[0] - 2.0 * (radius + MARGIN)
-        return max(1, math.floor(min(float(values["stroke"]), room) / float(values["step"]) + 1e-6))
+    def steps(self, settings: Values) -> int:
+        radius = float(settings["intruder_radius"])
+        room = self._box(settings)[0] - 2.0 * (radius + MARGIN)
+        return max(
+            1, math.floor(min(float(settings["stroke"]), room) / float(settings["step"]) + 1e-6)
+        )
 
     @staticmethod
-    def _box(values: Values) -> tuple[float, float]:
+    def _box(settings: Values) -> tuple[float, float]:
         """Width and height of the box [R]. Raises InputError if the intruder does not fit."""
-        radius = float(values["intruder_radius"])
-        grains = float(values["grains"]) * recipe(values, "mixed").mean_area()
-        area = grains / float(values["packing_fraction"]) + math.pi * radius**2
+        radius = float(settings["intruder_radius"])
+        grains = float(settings["grains"]) * recipe(settings, "mixed").mean_area()
+        area = grains / float(settings["packing_fraction"]) + math.pi * radius**2
         height = math.sqrt(area / ASPECT)
         width = area / height
         if 2.0 * radius + 2.0 * MARGIN > min(width, height):
@@ -85,12 +87,12 @@ class Intruder(Scene):
         return width, height
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        grains = recipe(values, packing)
-        radius = float(values["intruder_radius"])
-        fraction = float(values["packing_fraction"])
-        width, height = self._box(values)
+        grains = recipe(settings, packing)
+        radius = float(settings["intruder_radius"])
+        fraction = float(settings["packing_fraction"])
+        width, height = self._box(settings)
         outline: list[Point] = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
         world = RigidWorld(
             [
@@ -104,36 +106,37 @@ class Intruder(Scene):
                 ),
             ]
         )
-        return Setup(
-            packing=pack(
-                grains,
-                seed=seed,
-                outline=outline,
-                world=world,
-                packing_fraction=fraction,
-                progress=progress,
-            ),
+        packed = pack(
+            grains,
+            seed=seed,
+            outline=outline,
             world=world,
-            solver=solver(values),
+            packing_fraction=fraction,
+            progress=progress,
+        )
+        return Setup(
+            packing=packed,
+            world=world,
+            solver=solver(settings),
             handles=(Handle("intruder", "intruder", (1.0, 0.0), radius),),
             bounds=(-WALL, -WALL, width + WALL, height + WALL),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
         )
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """An avalanche: grains that were locked give way, and the force falls."""
-        del values
+        del settings
         fall = sudden_fall(setup, latest)
         if fall == 0.0:
             return Remarks()
         text = Text("avalanche: the force fell by {fall:.2g} k R", fall=fall)
         return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         body = setup.world["intruder"]
-        right = setup.outline[1][0] - float(values["intruder_radius"]) - MARGIN
-        end = min(body.home[0] + float(values["stroke"]), right)
+        right = setup.outline[1][0] - float(settings["intruder_radius"]) - MARGIN
+        end = min(body.home[0] + float(settings["stroke"]), right)
         ahead = body.home[0] + (increment + 1) * setup.solver.step
         if ahead > end + 1e-9:
             return None

@@ -17,18 +17,18 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
-from core.generate import KINDS, Recipe, inside
+from core.generate import KINDS, Progress, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
-from core.rigid import Point, RigidWorld
+from core.rigid import Point
 from core.settings import MACHINE, Settings
+from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
 from scenes.parameter import Parameter, Value
 from scenes.text import Text
 
 Values = Mapping[str, Value]
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
@@ -77,31 +77,20 @@ class Curve:
     force: Callable[[Packing, Increment], float] | None  # None: the number of grains that have left
 
 
-@dataclass
-class Setup:
-    """A scene that is built: the packing, the bodies, how to relax, and what a person can do with it."""
+@dataclass(kw_only=True)
+class Setup(System):
+    """A scene that is built: the system that an engine works on, and what a person can do with it."""
 
-    packing: Packing
-    world: RigidWorld
-    solver: Settings
     handles: tuple[Handle, ...]
     bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
-    friction_state: Friction | None = None  # what contacts remember at the start; None: nothing
-    friction: float = 0.0  # Coulomb coefficient, with bodies too; 0: the term does not exist
-    gravity: Point | None = None  # [k/R]; the weight of a grain is this times R0²
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
     box_handle: Callable[[PeriodicBox], Point] | None = (
         None  # where that handle is; None: the corner
     )
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
-    follow: Callable[[Packing, RigidWorld], None] | None = None  # moves what hangs on moved bodies
-    relaxes: bool = True  # False: ``follow`` sets the grains too; forces are measured only
     reach: Callable[[Packing, str, Point], Point] | None = None  # where a handle can go, of a wish
-    drag: float = (
-        0.0  # [k/R²] see ``relaxation``; where there is some, the grains go on by themselves
-    )
 
 
 @dataclass(frozen=True)
@@ -201,26 +190,26 @@ class Scene(ABC):
 
     def settings(self, overrides: Mapping[str, object] | None = None) -> dict[str, Value]:
         """All parameters, defaults unless overridden (by values or by typed text). Raises InputError for a bad name or value."""
-        values: dict[str, Value] = {p.name: p.default for p in self.parameters}
+        settings: dict[str, Value] = {p.name: p.default for p in self.parameters}
         by_name = {p.name: p for p in self.parameters}
         for name, value in (overrides or {}).items():
             if name not in by_name:
                 close = nearest(name, by_name)
                 hint = f"did you mean {close}?" if close else f"there are: {', '.join(by_name)}"
                 raise InputError(f"scene {self.name} has no parameter {name!r}; {hint}")
-            values[name] = (
+            settings[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
             )
-        self.validate(values)
-        return values
+        self.validate(settings)
+        return settings
 
-    def validate(self, values: Values) -> None:
-        """Quick: raise InputError if the values, each allowed, do not go together. Subclasses add what they know."""
-        del values
+    def validate(self, settings: Values) -> None:
+        """Quick: raise InputError if the settings, each allowed, do not go together. Subclasses add what they know."""
+        del settings
 
-    def steps(self, values: Values) -> int:
+    def steps(self, settings: Values) -> int:
         """Length of the scripted drive in increments."""
-        del values
+        del settings
         return self.default_steps
 
     def check_packing(self, packing: str) -> str:
@@ -229,22 +218,22 @@ class Scene(ABC):
             raise InputError(f"unknown packing {packing!r}: choose {', '.join(self.packings)}")
         return packing
 
-    def ingredients(self, values: Values) -> Ingredients:
-        """The terms that ``values`` call for, so that they can be compiled before anything is built."""
-        return Ingredients(friction=float(values.get("friction", 0.0)) > 0.0)
+    def ingredients(self, settings: Values) -> Ingredients:
+        """The terms that ``settings`` call for, so that they can be compiled before anything is built."""
+        return Ingredients(friction=float(settings.get("friction", 0.0)) > 0.0)
 
     @abstractmethod
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         """Set the scene up. ``progress`` is told the share done. Raises InputError if the parameters do not go together."""
 
     @abstractmethod
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """The scripted drive: where each body is to go in increment 0, 1, … of the drive; None at its end. {}: wait."""
 
-    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
-        """Let what is built have ``values``, of which the live parameters in ``changed`` are new.
+    def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
+        """Let what is built have ``settings``, of which the live parameters in ``changed`` are new.
 
         Arrays of the packing are replaced, never written into.
         """
@@ -252,21 +241,21 @@ class Scene(ABC):
         for name, kind in (("regular_poisson_ratio", False), ("auxetic_poisson_ratio", True)):
             if name in changed:
                 of_kind = np.signbit(packing.poisson_ratio) == kind
-                new = np.where(of_kind, float(values[name]), packing.poisson_ratio)
+                new = np.where(of_kind, float(settings[name]), packing.poisson_ratio)
                 packing.poisson_ratio = new
         if "contact_stiffness" in changed:
-            packing.contact_stiffness = np.full(len(packing), float(values["contact_stiffness"]))
+            packing.contact_stiffness = np.full(len(packing), float(settings["contact_stiffness"]))
         if "friction" in changed:
-            setup.friction = float(values["friction"])
+            setup.rub(float(settings["friction"]))
         if not changed.isdisjoint(p.name for p in SOLVER):
             setup.solver = replace(
                 setup.solver,
-                step=float(values["step"]),
-                tolerance=float(values["tolerance"]),
-                max_iterations=int(values["max_iterations"]),
+                step=float(settings["step"]),
+                tolerance=float(settings["tolerance"]),
+                max_iterations=int(settings["max_iterations"]),
             )
         if HAND_STRENGTH in changed:
-            setup.solver = replace(setup.solver, hand_strength=hand_strength(values))
+            setup.solver = replace(setup.solver, hand_strength=hand_strength(settings))
 
     def place_in_drive(self, increment: int, before: Values, after: Values) -> int:
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
@@ -274,9 +263,9 @@ class Scene(ABC):
             return increment
         return math.ceil(increment * float(before["step"]) / float(after["step"]) - 1e-9)
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
-        del setup, values, latest
+        del setup, settings, latest
         return Remarks()
 
     def what_holds(self, setup: Setup, latest: Latest) -> Holding:
@@ -375,30 +364,35 @@ SOLVER = (
 )
 
 
-def recipe(values: Values, packing: str) -> Recipe:
-    """The grains that ``values`` and the kind of packing ask for."""
+def recipe(settings: Values, packing: str) -> Recipe:
+    """The grains that ``settings`` and the kind of packing ask for."""
     return Recipe(
         kind=packing,
-        auxetic_fraction=float(values["auxetic_fraction"]),
-        regular_poisson_ratio=float(values["regular_poisson_ratio"]),
-        auxetic_poisson_ratio=float(values["auxetic_poisson_ratio"]),
-        contact_stiffness=float(values["contact_stiffness"]),
+        auxetic_fraction=float(settings["auxetic_fraction"]),
+        regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
+        auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
+        contact_stiffness=float(settings["contact_stiffness"]),
     )
 
 
-def solver(values: Values) -> Settings:
-    """How carefully ``values`` ask to relax."""
+def solver(settings: Values) -> Settings:
+    """How carefully ``settings`` ask to relax."""
     return Settings(
-        step=float(values["step"]),
-        tolerance=float(values["tolerance"]),
-        max_iterations=int(values["max_iterations"]),
-        hand_strength=hand_strength(values),
+        step=float(settings["step"]),
+        tolerance=float(settings["tolerance"]),
+        max_iterations=int(settings["max_iterations"]),
+        hand_strength=hand_strength(settings),
     )
 
 
-def hand_strength(values: Values) -> float:
-    """The strength of the hand that ``values`` ask for [k R]; without bound for a testing machine."""
-    strength = float(values[HAND_STRENGTH])
+def friction(settings: Values, grains: int) -> Friction | None:
+    """That of so many grains as ``settings`` call for; None without any."""
+    return Friction.of(float(settings["friction"]), grains)
+
+
+def hand_strength(settings: Values) -> float:
+    """The strength of the hand that ``settings`` ask for [k R]; without bound for a testing machine."""
+    strength = float(settings[HAND_STRENGTH])
     return MACHINE if strength >= STRONGEST else strength
 
 

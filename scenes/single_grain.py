@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.errors import InputError
+from core.generate import Progress
 from core.material import area_modulus
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
@@ -24,7 +25,6 @@ from scenes.scene import (
     Check,
     Handle,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
@@ -108,22 +108,22 @@ class SingleGrain(Scene):
         ),
     )
 
-    def validate(self, values: Values) -> None:
-        longest = LONGEST_STEP * float(values["radius"])
-        if float(values["step"]) > longest * (1.0 + 1e-9):
+    def validate(self, settings: Values) -> None:
+        longest = LONGEST_STEP * float(settings["radius"])
+        if float(settings["step"]) > longest * (1.0 + 1e-9):
             raise InputError(f"step must be at most {longest:.3g} R for grains of that radius")
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         del seed, progress  # nothing is random, nothing takes long
-        radius, nu = float(values["radius"]), float(values["poisson_ratio"])
-        four = bool(values["four_plates"])
+        radius, nu = float(settings["radius"]), float(settings["poisson_ratio"])
+        four = bool(settings["four_plates"])
         ratios = {"regular": [nu], "auxetic": [-nu], "mixed": [nu, -nu]}[packing]
         # Four plates: two grains share a wall between them.
         apart = (1.0 + 0.5 * PLATE if four else APART) * radius
         x = np.array([0.0] if len(ratios) == 1 else [-apart, apart])
-        grains = Packing(x, radius, radius, ratios, float(values["contact_stiffness"]))
+        grains = Packing(x, radius, radius, ratios, float(settings["contact_stiffness"]))
         world, half_width = _plates(grains, four)
         side = half_width + (PLATE * radius if four else 0.0)
         plates = tuple((name, world[name].home[0]) for name in PLATES) if four else ()
@@ -140,10 +140,10 @@ class SingleGrain(Scene):
             packing=grains,
             world=world,
             solver=Settings(
-                step=float(values["step"]),
-                tolerance=float(values["tolerance"]),
-                max_iterations=int(values["max_iterations"]),
-                hand_strength=hand_strength(values),
+                step=float(settings["step"]),
+                tolerance=float(settings["tolerance"]),
+                max_iterations=int(settings["max_iterations"]),
+                hand_strength=hand_strength(settings),
             ),
             handles=(Handle("plate", "plate", (0.0, -1.0), half_width),),
             bounds=(-side - 0.2 * radius, -1.2 * PLATE * radius, side + 0.2 * radius, top),
@@ -151,30 +151,30 @@ class SingleGrain(Scene):
             follow=follow if four else None,
         )
 
-    def adjust(self, setup: Setup, values: Values, changed: frozenset[str]) -> None:
-        super().adjust(setup, values, changed)
+    def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
+        super().adjust(setup, settings, changed)
         if "poisson_ratio" in changed:
-            nu = float(values["poisson_ratio"])
+            nu = float(settings["poisson_ratio"])
             setup.packing.poisson_ratio = np.copysign(nu, setup.packing.poisson_ratio)
 
     def region(self, setup: Setup) -> list[Point]:
         return below_height(setup.outline, setup.world["plate"].position[1])
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         plate = setup.world["plate"]
-        end = 2.0 * float(values["radius"]) * float(values["compression"])
+        end = 2.0 * float(settings["radius"]) * float(settings["compression"])
         depth = (increment + 1) * setup.solver.step
         if depth > end + 1e-9:
             return None
         return {"plate": (plate.home[0], plate.home[1] - depth)}
 
-    def steps(self, values: Values) -> int:
-        end = 2.0 * float(values["radius"]) * float(values["compression"])
-        return math.floor(end / float(values["step"]) + 1e-6)
+    def steps(self, settings: Values) -> int:
+        end = 2.0 * float(settings["radius"]) * float(settings["compression"])
+        return math.floor(end / float(settings["step"]) + 1e-6)
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """Each grain's height and width, and for two plates their ratio."""
-        del values
+        del settings
         packing = setup.packing
         texts = []
         for i in range(len(packing)):

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from core.exact import approximate_distance, contact_distance, parallel_expansion
+from core.generate import Progress
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
@@ -21,7 +22,6 @@ from scenes.scene import (
     Handle,
     Ingredients,
     Latest,
-    Progress,
     Remarks,
     Scene,
     Setup,
@@ -60,22 +60,22 @@ class TwoEllipses(Scene):
         Parameter("contact_stiffness", 50.0, "k", 5.0, 1000.0, "force over overlap", live=True),
     )
 
-    def ingredients(self, values: Values) -> Ingredients:
-        del values
+    def ingredients(self, settings: Values) -> Ingredients:
+        del settings
         return Ingredients(rigid=False)
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         del seed, progress  # nothing is random, nothing takes long
         # The kind has no part in it but the colour: contact is a matter of outlines.
         nu = {"regular": [0.8, 0.8], "auxetic": [-0.8, -0.8], "mixed": [0.8, -0.8]}[packing]
-        distance = float(values["distance"])
-        sizes = np.array([1.0, float(values["radius"])])
-        stretch = math.sqrt(float(values["aspect"]))
-        tilt = math.radians(float(values["tilt"]))
-        tilts = [tilt, -tilt if bool(values["mirror"]) else tilt]
-        grains = Packing([0.0, distance], 0.0, sizes, nu, float(values["contact_stiffness"]))
+        distance = float(settings["distance"])
+        sizes = np.array([1.0, float(settings["radius"])])
+        stretch = math.sqrt(float(settings["aspect"]))
+        tilt = math.radians(float(settings["tilt"]))
+        tilts = [tilt, -tilt if bool(settings["mirror"]) else tilt]
+        grains = Packing([0.0, distance], 0.0, sizes, nu, float(settings["contact_stiffness"]))
         grains.set_axes(sizes * stretch, sizes / stretch, tilts)
         bodies = [RigidBody(GRAIN, "body", position=(distance, 0.0), held=True)]
         for k, name in enumerate(TIPS):
@@ -120,21 +120,21 @@ class TwoEllipses(Scene):
             reach=reach,
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """Both make half a turn, the same way or as mirror images."""
         if increment >= self.default_steps:
             return None
         turned = math.radians((increment + 1) * TURN)
-        ways = (1.0, -1.0 if bool(values["mirror"]) else 1.0)
-        start = math.radians(float(values["tilt"]))
+        ways = (1.0, -1.0 if bool(settings["mirror"]) else 1.0)
+        start = math.radians(float(settings["tilt"]))
         return {
             name: _on_circle(setup.packing, k, ways[k] * (start + turned))
             for k, name in enumerate(TIPS)
         }
 
-    def remarks(self, setup: Setup, values: Values, latest: Latest) -> Remarks:
+    def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """Both overlaps, and for equal, equally tilted ellipses the expansion."""
-        del values, latest
+        del settings, latest
         packing = setup.packing
         distance, angle = line_of_centres(packing)
         model = approximate_distance(packing, 0, 1, angle) - distance

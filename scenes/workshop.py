@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core.errors import InputError
-from core.generate import pack
+from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -14,10 +14,10 @@ from scenes.scene import (
     MATERIAL,
     SOLVER,
     Handle,
-    Progress,
     Scene,
     Setup,
     Values,
+    friction,
     hand,
     recipe,
     solver,
@@ -49,25 +49,25 @@ class Workshop(Scene):
         *SOLVER,
     )
 
-    def validate(self, values: Values) -> None:
-        width, height = float(values["width"]), float(values["height"])
-        radius = float(values["intruder_radius"])
+    def validate(self, settings: Values) -> None:
+        width, height = float(settings["width"]), float(settings["height"])
+        radius = float(settings["intruder_radius"])
         if 2.0 * radius + 4.0 * MARGIN > min(width, height):
             raise InputError(
                 "the disc does not fit into the box: raise width and height or lower intruder_radius"
             )
-        area = int(values["grains"]) * recipe(values, "mixed").mean_area()
+        area = int(settings["grains"]) * recipe(settings, "mixed").mean_area()
         if area > FULLEST * (width * height - math.pi * radius**2):
             raise InputError("so many grains leave no room: lower grains, or raise width or height")
 
-    def steps(self, values: Values) -> int:
-        return max(2, math.floor(2.0 * _way(values) / float(values["step"]) + 1e-6))
+    def steps(self, settings: Values) -> int:
+        return max(2, math.floor(2.0 * _way(settings) / float(settings["step"]) + 1e-6))
 
     def build(
-        self, values: Values, packing: str, seed: int, progress: Progress | None = None
+        self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
-        width, height = float(values["width"]), float(values["height"])
-        radius = float(values["intruder_radius"])
+        width, height = float(settings["width"]), float(settings["height"])
+        radius = float(settings["intruder_radius"])
         outline: list[Point] = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)]
         disc = RigidBody(
             "intruder",
@@ -77,32 +77,33 @@ class Workshop(Scene):
             held=True,
         )
         world = RigidWorld([wall("walls", outline, WALL, closed=True), disc])
-        return Setup(
-            packing=pack(
-                recipe(values, packing),
-                seed=seed,
-                outline=outline,
-                world=world,
-                count=int(values["grains"]),
-                progress=progress,
-            ),
+        packed = pack(
+            recipe(settings, packing),
+            seed=seed,
+            outline=outline,
             world=world,
-            solver=solver(values),
+            count=int(settings["grains"]),
+            progress=progress,
+        )
+        return Setup(
+            packing=packed,
+            world=world,
+            solver=solver(settings),
             handles=(Handle("intruder", "disc", (1.0, 0.0), radius),),
             bounds=(-WALL, -WALL, width + WALL, height + WALL),
             outline=outline,
-            friction=float(values["friction"]),
+            friction=friction(settings, len(packed)),
         )
 
-    def drive(self, setup: Setup, values: Values, increment: int) -> dict[str, Point] | None:
+    def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         """To the other end and back."""
-        if increment >= self.steps(values):
+        if increment >= self.steps(settings):
             return None
-        way, home = _way(values), setup.world["intruder"].home
+        way, home = _way(settings), setup.world["intruder"].home
         gone = min((increment + 1) * setup.solver.step, 2.0 * way)
         return {"intruder": (home[0] + (gone if gone <= way else 2.0 * way - gone), home[1])}
 
 
-def _way(values: Values) -> float:
+def _way(settings: Values) -> float:
     """From one end of the scripted push to the other [R]."""
-    return float(values["width"]) - 2.0 * (float(values["intruder_radius"]) + MARGIN)
+    return float(settings["width"]) - 2.0 * (float(settings["intruder_radius"]) + MARGIN)

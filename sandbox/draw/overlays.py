@@ -188,24 +188,8 @@ def _draw_force(
     scale = mark_scale(painter, rect)
     way = (handle.fx / size, -handle.fy / size)
     start = (KNOB + 6.0) * scale
-    length = min(size / top, 1.2) * ARROW_LONGEST * scale
-    head = 13.0 * scale
     root = (x + start * way[0], y + start * way[1])
-    neck = (root[0] + length * way[0], root[1] + length * way[1])
-    tip = (neck[0] + head * way[0], neck[1] + head * way[1])
-    ground = painter.theme.ground
-    side = (-way[1] * 0.62 * head, way[0] * 0.62 * head)
-    wings = [
-        tip,
-        (neck[0] + side[0], neck[1] + side[1]),
-        (neck[0] - side[0], neck[1] - side[1]),
-    ]
-    corners = np.array([[px, -py] for px, py in wings])
-    # A rim of ground colour sets the arrow off from grains of any colour.
-    painter.line(root, neck, 9.0 * scale, ground, 0.85, rect)
-    painter.hull(corners, 2.0 * scale, ground, alpha=0.85, clip=rect)
-    painter.line(root, neck, 5.0 * scale, HAND, clip=rect)
-    painter.hull(corners, 0.0, HAND, clip=rect)
+    tip = _draw_arrow(painter, rect, root, way, min(size / top, 1.2) * ARROW_LONGEST * scale)
 
     label = f"{number(size, decimals_for(top) + 2)} {FORCE_UNIT}"
     type_, pad = painter.type, round(14 * scale)
@@ -233,3 +217,31 @@ def _draw_force(
         alpha=0.94,
     )
     painter.text(label, *plate.center, size=letters, bold=True, anchor="centre", clip=rect)
+
+
+def _draw_arrow(
+    painter: Painter,
+    rect: pygame.Rect,
+    root: tuple[float, float],
+    way: tuple[float, float],
+    length: float,
+) -> tuple[float, float]:
+    """From ``root`` along ``way``, a unit vector; where its tip is [px]."""
+    scale = mark_scale(painter, rect)
+    head = 13.0 * scale
+    neck = (root[0] + length * way[0], root[1] + length * way[1])
+    tip = (neck[0] + head * way[0], neck[1] + head * way[1])
+    ground = painter.theme.ground
+    side = (-way[1] * 0.62 * head, way[0] * 0.62 * head)
+    wings = [
+        tip,
+        (neck[0] + side[0], neck[1] + side[1]),
+        (neck[0] - side[0], neck[1] - side[1]),
+    ]
+    corners = np.array([[px, -py] for px, py in wings])
+    # A rim of ground colour sets the arrow off from grains of any colour.
+    painter.line(root, neck, 9.0 * scale, ground, 0.85, rect)
+    painter.hull(corners, 2.0 * scale, ground, alpha=0.85, clip=rect)
+    painter.line(root, neck, 5.0 * scale, HAND, clip=rect)
+    painter.hull(corners, 0.0, HAND, clip=rect)
+    return tip

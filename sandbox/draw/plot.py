@@ -129,23 +129,7 @@ def draw_plot(
     digits = decimals_for(axes[3] - axes[2]) + 2
     line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
     right = rect.right - 2 * pad
-
-    # The headline: what is plotted at the left; its present value, or what marks mean, at the right.
-    if len(curves) == 1:
-        left = _draw_value(painter, (right, line), parts[0][1], digits, unit_of(label))
-    else:
-        kinds = [event.kind for curve in curves if not curve.faint for event in curve.events]
-        room = 0.5 * (right - rect.left) - gutter
-        left = draw_event_key(painter, right, line, kinds, room)
-    room = left - rect.left - gutter - 2 * pad
-    painter.text(
-        type_.shortened(label, SMALL, room),
-        rect.left + gutter,
-        line,
-        size=SMALL,
-        colour=theme.soft_text,
-    )
-
+    _draw_headline(painter, rect, label, curves, digits, gutter, line)
     top = line + type_.height(BODY) // 2 + round(6 * scale)
     # Numbers of the stroke stand half a line below the axis, clear of the force axis' lowest.
     bottom = rect.bottom - text - text // 2 - round(4 * scale)
@@ -166,23 +150,57 @@ def draw_plot(
             words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
         )
         return
-    inside = box.rect.inflate(round(12 * scale), round(12 * scale))
     if limit <= axes[3]:
         _draw_limit(painter, box, limit)
-    for curve, part in reversed(list(zip(curves, parts, strict=True))):
-        _draw_curve(painter, box, inside, curve, part)
-    for curve, part in reversed(list(zip(curves, parts, strict=True))):
-        if not curve.faint and part[0].size:
-            last = float(box.x(part[0][-1])), float(box.y(part[1][-1]))
-            painter.disc(*last, 6.5 * scale, theme.panel, clip=inside)
-            painter.disc(*last, 4.5 * scale, curve.colour, clip=inside)
-            at = [(float(box.x(e.stroke)), float(box.y(e.force)), e.kind) for e in curve.events]
-            draw_events(painter, inside, at)
+    _draw_curves(painter, box, curves, parts)
     ends = [
         (float(box.x(part[0][-1])), float(box.y(part[1][-1])), _colour(painter, curve), curve.dash)
         for curve, part in named
     ]
     draw_names(painter, box.rect, right, labels, ends)
+
+
+def _draw_headline(
+    painter: Painter,
+    rect: pygame.Rect,
+    label: str,
+    curves: Sequence[Curve],
+    digits: int,
+    gutter: int,
+    line: int,
+) -> None:
+    """What is plotted at the left; its present value, or what marks mean, at the right."""
+    pad = round(8 * painter.scale)
+    left, right = rect.left + gutter, rect.right - 2 * pad
+    if len(curves) == 1:
+        force = finite_part(curves[0])[1]
+        end = _draw_value(painter, (right, line), force, digits, unit_of(label))
+    else:
+        kinds = [event.kind for curve in curves if not curve.faint for event in curve.events]
+        end = draw_event_key(painter, right, line, kinds, 0.5 * (right - rect.left) - gutter)
+    text = painter.type.shortened(label, SMALL, end - left - 2 * pad)
+    painter.text(text, left, line, size=SMALL, colour=painter.theme.soft_text)
+
+
+def _draw_curves(
+    painter: Painter,
+    box: PlotBox,
+    curves: Sequence[Curve],
+    parts: Sequence[tuple[Floats, Floats]],
+) -> None:
+    """The first one in front; present ones with a dot where they end, and marks."""
+    scale = painter.scale
+    inside = box.rect.inflate(round(12 * scale), round(12 * scale))
+    from_behind = list(zip(curves, parts, strict=True))[::-1]
+    for curve, part in from_behind:
+        _draw_curve(painter, box, inside, curve, part)
+    for curve, part in from_behind:
+        if not curve.faint and part[0].size:
+            last = float(box.x(part[0][-1])), float(box.y(part[1][-1]))
+            painter.disc(*last, 6.5 * scale, painter.theme.panel, clip=inside)
+            painter.disc(*last, 4.5 * scale, curve.colour, clip=inside)
+            at = [(float(box.x(e.stroke)), float(box.y(e.force)), e.kind) for e in curve.events]
+            draw_events(painter, inside, at)
 
 
 def _draw_limit(painter: Painter, box: PlotBox, limit: float) -> None:

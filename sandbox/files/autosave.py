@@ -12,12 +12,11 @@ import logging
 import os
 import re
 import secrets
-import sys
 import threading
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
 
+from filelock import FileLock
 from platformdirs import user_data_path
 
 from core.errors import InputError
@@ -66,9 +65,8 @@ def find(where: Path | None = None) -> tuple[Leftover, ...]:
     for path in sorted(where.glob("autosave-*.toml")) if where.is_dir() else ():
         if not _NAME.fullmatch(path.name):
             continue
-        with contextlib.suppress(OSError), _Lock(path.with_suffix(".lock")) as lock:
-            if not lock.held:
-                continue
+        # A lock that somebody has is a Timeout, which is an OSError too.
+        with contextlib.suppress(OSError), FileLock(path.with_suffix(".lock"), timeout=0):
             try:
                 found.append(Leftover(path, path.stat().st_mtime, read_scene(path)))
             except InputError as error:
@@ -88,9 +86,8 @@ class Autosave:
         where.mkdir(parents=True, exist_ok=True)
         # Numbers of processes come again, and in a container soon; the rest of the name does not.
         self.path = where / f"autosave-{os.getpid()}-{secrets.token_hex(4)}.toml"
-        self._lock = _Lock(self.path.with_suffix(".lock"))
-        if not self._lock.held:
-            raise OSError(f"{self.path}: in use")
+        self._lock = FileLock(self.path.with_suffix(".lock"), timeout=0)
+        self._lock.acquire()
         self._every = every
         self._newest: Made | None = None
         self._written: Made | None = None
@@ -162,53 +159,3 @@ def _remove(path: Path) -> None:
     for name in (path.name, f"{path.stem}.0.npz", f"{path.stem}.1.npz", f"{path.stem}.lock"):
         with contextlib.suppress(OSError):
             path.with_name(name).unlink(missing_ok=True)
-
-
-class _Lock:
-    """A file that this process alone has locked, if ``held``. The system unlocks it when the process ends, however it does."""
-
-    def __init__(self, path: Path) -> None:
-        self._file: IO[bytes] | None = path.open("ab")
-        if not _locked(self._file):
-            self.release()
-
-    @property
-    def held(self) -> bool:
-        """Is it ours?"""
-        return self._file is not None
-
-    def release(self) -> None:
-        """Let go of it."""
-        if self._file is not None:
-            self._file.close()
-            self._file = None
-
-    def __enter__(self) -> _Lock:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.release()
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    def _locked(file: IO[bytes]) -> bool:
-        """Lock a file, unless somebody has."""
-        try:
-            file.seek(0)
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-        except OSError:
-            return False
-        return True
-
-else:
-    import fcntl
-
-    def _locked(file: IO[bytes]) -> bool:
-        """Lock a file, unless somebody has."""
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            return False
-        return True

@@ -53,10 +53,10 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
 def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a log. Raises InputError for one that is missing, malformed, truncated, hostile or of another version."""
     path = Path(path)
-    records = list(_records(path))
-    if not records:
+    entries = list(_entries(path))
+    if not entries:
         raise InputError(f"{path}: the log is empty")
-    head, last = records[0], records[-1]
+    head, last = entries[0], entries[-1]
     if head.get("format") != FORMAT:
         raise InputError(
             f"{path}: not a log of this program (its first line does not say {FORMAT!r})"
@@ -78,20 +78,20 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
     if ("start" in head) != (version == VERSION_WITH_START):
         raise InputError(f"{path}: line 1: a log of version {VERSION_WITH_START} has a start")
-    if len(records) < 2 or "end" not in last:
+    if len(entries) < 2 or "end" not in last:
         raise InputError(
             f"{path}: the log is truncated (its last line does not say where the run ended)"
         )
     commands: list[tuple[int, Command]] = []
     before = 0
-    for number, record in enumerate(records[1:-1], 2):
-        at = record.pop("at", None)
+    for number, entry in enumerate(entries[1:-1], 2):
+        at = entry.pop("at", None)
         if not _whole(at) or at < before:
             raise InputError(
                 f"{path}: line {number}: 'at' must be a whole number that never decreases"
             )
         try:
-            commands.append((at, from_data(record)))
+            commands.append((at, from_data(entry)))
         except InputError as error:
             raise InputError(f"{path}: line {number}: {error}") from None
         before = at
@@ -120,7 +120,7 @@ def _start(path: Path, start: object) -> SceneFile:
         raise InputError(f"{path}: line 1: the grains of start are damaged") from None
 
 
-def _records(path: Path) -> Iterator[dict[str, Any]]:
+def _entries(path: Path) -> Iterator[dict[str, Any]]:
     """Line after line, so that a hostile file is refused at its first bad line and not after it has filled the memory."""
     try:
         if not path.is_file():
@@ -131,7 +131,7 @@ def _records(path: Path) -> Iterator[dict[str, Any]]:
             for number, line in enumerate(file, 1):
                 if number > MOST_LINES:
                     raise InputError(f"{path}: more lines than any log of this program has")
-                yield _record(path, number, line)
+                yield _entry(path, number, line)
     except InputError:
         raise
     except (
@@ -142,16 +142,16 @@ def _records(path: Path) -> Iterator[dict[str, Any]]:
         raise InputError(f"{str(path)!r}: cannot be read ({reason})") from None
 
 
-def _record(path: Path, number: int, line: str) -> dict[str, Any]:
+def _entry(path: Path, number: int, line: str) -> dict[str, Any]:
     try:
-        record = json.loads(line, parse_constant=lambda name: _refuse(name))
+        entry = json.loads(line, parse_constant=lambda name: _refuse(name))
     except (ValueError, RecursionError):
         raise InputError(
             f"{path}: line {number} is not valid JSON; the log is damaged or truncated"
         ) from None
-    if not isinstance(record, dict):
+    if not isinstance(entry, dict):
         raise InputError(f"{path}: line {number} is not a JSON object")
-    return record
+    return entry
 
 
 def _refuse(name: str) -> float:

@@ -94,10 +94,10 @@ def put_into(setup: Setup, file: SceneFile) -> None:
             x, y, angle = file.placements[body.name]
             body.position, body.angle = (x, y), angle
     setup.world.redraw(walls)
-    if setup.friction > 0.0:
-        setup.friction_state = Friction(setup.friction, len(file.grains))
+    if setup.friction is not None:
+        setup.friction = Friction(setup.friction.coefficient, len(file.grains))
         if file.spin is not None and file.memory is not None:
-            setup.friction_state.remember(file.spin, *file.memory)
+            setup.friction.remember(file.spin, *file.memory)
 
 
 def check_fit(

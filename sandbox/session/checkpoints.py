@@ -32,7 +32,7 @@ class Checkpoint:
     last: Increment  # bare
     history: History  # of which the first ``length`` rows belong to it
     length: int
-    values: Values
+    settings: Values
 
     @property
     def increment(self) -> int:

@@ -2,10 +2,32 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 
+import numpy as np
+
+from core.hand import CELL
+from core.quasistatic import Increment
+from core.relaxation import FAILED, StopReason
 from core.rigid import Point
-from scenes.scene import Remarks
+from sandbox.session.history import Row
+from scenes.accuracy import Accuracy
+from scenes.scene import Remarks, Setup
+from scenes.text import Text
+
+LOCKED_AFTER = 3  # increments in a row that all the strength of the hand could not make
+STUCK = 1e-3  # of a step: a body that moves less than that is stopped
+PRESSED_IN = (
+    "a grain was pressed into a wall: back to the state before this step. Draw back, or reset"
+)
+SQUEEZED_FLAT = "a grain was squeezed flat: back to the state before this step. Draw back, or reset"
+BLEW_UP = "the numbers blew up: back to the state before this step. Draw back, or reset"
+_WHAT_FAILED = {
+    StopReason.COLLAPSED: SQUEEZED_FLAT,
+    StopReason.NOT_FINITE: BLEW_UP,
+    StopReason.SUNK: PRESSED_IN,
+}
 
 
 @dataclass
@@ -46,3 +68,89 @@ class Course:
         self.held.clear()
         self.blocked.clear()
         self.script = None
+
+    @property
+    def locked(self) -> bool:
+        """True if all the strength of the hand moves nothing."""
+        return self.stuck >= LOCKED_AFTER
+
+    def follow(self, setup: Setup, increment: Increment) -> None:
+        """Stroke and direction of the drive: along its axis for a body that slides, as the hand pulls for one that is dragged."""
+        drive = setup.handles[0].body
+        if drive == CELL:
+            return
+        body = setup.world[drive]
+        if body.axis is not None:
+            self.stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
+            return
+        self.stroke += math.hypot(*increment.moved.get(drive, (0.0, 0.0)))
+        pull = increment.pulled.get(drive, (0.0, 0.0))
+        if pull != (0.0, 0.0):
+            self.direction = pull
+
+    def read_off(self, setup: Setup, increment: Increment, number: int, accuracy: Accuracy) -> Row:
+        """The row of the history for an increment, the ``number``-th.
+
+        ``accuracy`` is that of the scene; the error of the force on the handle is estimated by it.
+        """
+        fx = fy = 0.0
+        drive = setup.handles[0].body
+        if drive != CELL:
+            fx, fy = map(float, increment.reactions[setup.world.index(drive), :2])
+        resisting = -(fx * self.direction[0] + fy * self.direction[1]) + 0.0
+        curve = setup.curve
+        if curve is not None:
+            self.stroke = number if curve.stroke is None else curve.stroke(setup.packing, increment)
+            force = curve.force
+            resisting = self.out if force is None else force(setup.packing, increment)
+        report = increment.report
+        return Row(
+            increment=number,
+            stroke=self.stroke,
+            fx=fx,
+            fy=fy,
+            grains_out=self.out,
+            energy=report.energy,
+            residual=report.residual,
+            iterations=report.iterations,
+            stop_reason=str(report.reason),
+            resisting=float(resisting),
+            force_error=accuracy.force_error(report.residual, report.mean_contact_force),
+            hand_strength=setup.solver.hand_strength,
+        )
+
+    def tell_what_stopped(self, setup: Setup, increment: Increment) -> None:
+        """Notices of what held the hand back; what is stuck tries again only when the hand moves.
+
+        A hand that is not strong enough tries ``LOCKED_AFTER`` times, as friction may yield meanwhile; so does the script.
+        """
+        self.notices.clear()
+        step, limit = setup.solver.step, setup.solver.hand_strength
+        stuck = {name: math.hypot(*way) < STUCK * step for name, way in increment.moved.items()}
+        limited = "force limit" in increment.stopped.values()
+        if increment.moved or CELL in increment.stopped:
+            still = all(stuck.values()) and increment.share == 0.0
+            self.stuck = self.stuck + 1 if limited and still else 0
+        if limited and self.script is not None:
+            self.script = None if self.locked else self.script - 1
+        labels = {handle.body: handle.label for handle in setup.handles}
+        for name, why in increment.stopped.items():
+            label = labels[name]
+            if why == "force limit":
+                if self.locked:
+                    self.blocked.add(name)
+                else:
+                    text = "all the hand has: {limit:g} k R on the {label}"
+                    self.notices.append(Text(text, limit=limit, label=label))
+                continue
+            if stuck[name]:
+                self.blocked.add(name)
+            if why == "end of travel":
+                self.notices.append(Text("{label}: end of travel", label=label))
+            elif stuck[name]:
+                self.notices.append(Text("{label}: stopped by the wall", label=label))
+        reason = increment.report.reason
+        if reason in FAILED:
+            self.blocked.update(increment.moved, {CELL})
+            self.script = None
+            self.notices.append(_WHAT_FAILED[reason])

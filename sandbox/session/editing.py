@@ -47,7 +47,7 @@ class Edited:
     forgotten: tuple[int, int] = (0, 0)  # primitives that go: the first, and how many
 
 
-def edited(setup: Setup, values: Values, command: Edit, next_label: int) -> Edited:
+def edited(setup: Setup, settings: Values, command: Edit, next_label: int) -> Edited:
     """What ``command`` makes of a scene at rest, which is left as it is. Raises InputError where it cannot be done."""
     if not setup.relaxes or setup.follow is not None:
         raise InputError("nothing can be made in this scene: its grains and plates move together")
@@ -56,28 +56,28 @@ def edited(setup: Setup, values: Values, command: Edit, next_label: int) -> Edit
         raise InputError("this is far outside the scene")
     match command:
         case Place(x, y, kind):
-            return _place(setup, values, (x, y), kind, next_label)
+            return _place(setup, settings, (x, y), kind, next_label)
         case Erase(x, y, radius):
             return _erase(setup, (x, y), radius)
         case Retype(x, y, radius, kind):
-            return _retype(setup, values, (x, y), radius, kind)
+            return _retype(setup, settings, (x, y), radius, kind)
         case DrawWall(points):
             return _draw(setup, points)
         case EraseWall(x, y):
             return _erase_wall(setup, (x, y))
 
 
-def poisson_ratio(values: Values, kind: str) -> float:
+def poisson_ratio(settings: Values, kind: str) -> float:
     """ν of a grain of that kind in a scene with these settings."""
     if kind == "auxetic":
-        return float(values.get("auxetic_poisson_ratio", -DEFAULT_POISSON_RATIO))
-    return float(values.get("regular_poisson_ratio", DEFAULT_POISSON_RATIO))
+        return float(settings.get("auxetic_poisson_ratio", -DEFAULT_POISSON_RATIO))
+    return float(settings.get("regular_poisson_ratio", DEFAULT_POISSON_RATIO))
 
 
 # Grains
 
 
-def _place(setup: Setup, values: Values, at: Point, kind: str, label: int) -> Edited:
+def _place(setup: Setup, settings: Values, at: Point, kind: str, label: int) -> Edited:
     packing = setup.packing
     if len(packing) >= MOST_GRAINS:
         raise InputError(Text("there are {most} grains, and no more fit", most=MOST_GRAINS))
@@ -97,8 +97,8 @@ def _place(setup: Setup, values: Values, at: Point, kind: str, label: int) -> Ed
             break
     else:
         raise InputError("no room for a grain here: erase one first")
-    nu = poisson_ratio(values, kind)
-    stiffness = float(values.get("contact_stiffness", DEFAULT_CONTACT_STIFFNESS))
+    nu = poisson_ratio(settings, kind)
+    stiffness = float(settings.get("contact_stiffness", DEFAULT_CONTACT_STIFFNESS))
     new = Packing([place[0]], [place[1]], radius, nu, stiffness, label=[label])
     new.state[2] = min(radius, free)
     joined = packing.copy()
@@ -127,9 +127,9 @@ def _erase(setup: Setup, at: Point, radius: float) -> Edited:
     return Edited(packing.select(~gone), np.flatnonzero(~gone), setup.world.drawn)
 
 
-def _retype(setup: Setup, values: Values, at: Point, radius: float, kind: str) -> Edited:
+def _retype(setup: Setup, settings: Values, at: Point, radius: float, kind: str) -> Edited:
     packing = setup.packing.copy()
-    nu = poisson_ratio(values, kind)
+    nu = poisson_ratio(settings, kind)
     other = room.within(packing, at, radius) & (packing.poisson_ratio != nu)
     if not other.any():
         raise InputError("there is no grain of another kind here")

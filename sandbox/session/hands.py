@@ -19,10 +19,10 @@ ARRIVED = 1e-6  # [R] a body this near its target is there
 
 @dataclass(frozen=True)
 class Hands:
-    """A built scene with its values as they are, and its course: where its bodies are to go. Holds nothing of its own."""
+    """A built scene with its settings as they are, and its course: where its bodies are to go. Holds nothing of its own."""
 
     scene: Scene
-    values: Values
+    settings: Values
     setup: Setup
     course: Course
 
@@ -66,7 +66,7 @@ class Hands:
         """Where bodies are to go in the next increment; the script is one further then."""
         course = self.course
         if course.script is not None:
-            targets = self.scene.drive(self.setup, self.values, course.script)
+            targets = self.scene.drive(self.setup, self.settings, course.script)
             if targets is not None:
                 course.script += 1
                 course.targets = dict(targets)

@@ -26,7 +26,7 @@ class Row:
     resisting: (
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
-    force_error: float = math.nan  # estimate for the force on the handle [k R], see ``reading``
+    force_error: float = math.nan  # estimate for the force on the handle [k R], see ``Accuracy``
     hand_strength: float = math.inf  # the most that the hand could give [k R]
 
     @property

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from core.errors import InputError
-from core.friction import Friction
 from core.hand import CELL
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
@@ -17,19 +16,10 @@ from sandbox.session.checkpoints import Checkpoint, Checkpoints, bare
 from sandbox.session.commands import Edit
 from sandbox.session.course import Course
 from sandbox.session.editing import edited
-from sandbox.session.frame import Frame
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
-from sandbox.session.reading import (
-    LOCKED_AFTER,
-    follow_drive,
-    locked,
-    read_off,
-    tell_what_stopped,
-)
-from sandbox.session.take_frame import Shown, take
-from scenes.scene import Check, Earlier, Latest, Remarks, Scene, Setup, Track, Values
-from scenes.text import message
+from scenes.scene import Check, Earlier, Holding, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.text import Text, message
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
@@ -40,39 +30,25 @@ class Run:
     """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
 
     def __init__(
-        self, scene: Scene, values: Values, packing_kind: str, seed: int, setup: Setup
+        self, scene: Scene, settings: Values, packing_kind: str, seed: int, setup: Setup
     ) -> None:
         drive = setup.handles[0]
-        self.scene, self.values, self.setup = scene, values, setup
-        self._course = Course(drive.direction, len(setup.packing))
+        self.scene, self.settings, self.setup = scene, settings, setup
+        self.course = Course(drive.direction, len(setup.packing))
         self.packing_kind, self.seed = packing_kind, seed
-        friction = None
-        if setup.friction > 0.0:
-            kept = setup.friction_state
-            friction = Friction(0.5, len(setup.packing)) if kept is None else kept.copy()
-            friction.coefficient = setup.friction
-        self.engine = Quasistatic(
-            setup.packing,
-            setup.world,
-            setup.solver,
-            friction,
-            setup.gravity,
-            follow=setup.follow,
-            drag=setup.drag,
-            relaxes=setup.relaxes,
-        )
+        self.engine = Quasistatic(setup)
         self.history = History()
         self.checkpoints = Checkpoints()
-        self._course.next_label = int(setup.packing.label.max(initial=-1)) + 1
+        self.course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
         self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
         self.engine.begin({})
         last: Increment | None = None
         while last is None:
             last = self.engine.relax(1_000)
-        self._last = last
-        self._course.moving = setup.drag > 0.0
-        self._record(last)
+        self.last = last
+        self.course.moving = setup.drag > 0.0
+        self._add_row(last)
         self._remark(None, None, 0)
         self._keep()
 
@@ -81,37 +57,37 @@ class Run:
     @property
     def hands(self) -> Hands:
         """What holds its bodies and says where they go."""
-        return Hands(self.scene, self.values, self.setup, self._course)
+        return Hands(self.scene, self.settings, self.setup, self.course)
 
     def say(self, notice: str) -> None:
         """Plain words for the person at the window, until something else is to be said."""
-        self._course.notices = [notice]
+        self.course.notices = [notice]
 
-    def adjust(self, values: Values, changed: frozenset[str]) -> None:
-        """Live parameters, those in ``changed``, become what ``values`` say; then one increment relaxes where things stand.
+    def adjust(self, settings: Values, changed: frozenset[str]) -> None:
+        """Live parameters, those in ``changed``, become what ``settings`` say; then one increment relaxes where things stand.
 
         Raises InputError for a step that is too long, and changes nothing then.
         """
-        setup, before = self.setup, self.present()
+        before = self.present()
         try:
-            self.scene.adjust(setup, values, changed)
-            self.engine.adjust(setup.solver, setup.friction, setup.gravity, setup.drag)
+            self.scene.adjust(self.setup, settings, changed)
+            self.engine.look_again()
         except InputError:
             self.restore(before)
             raise
-        self._course.blocked.clear()
-        self._course.stuck = 0
-        if self._course.script is not None:
-            place = self.scene.place_in_drive(self._course.script, self.values, values)
-            self._course.script = place
-        self.values = values
+        self.course.blocked.clear()
+        self.course.stuck = 0
+        if self.course.script is not None:
+            place = self.scene.place_in_drive(self.course.script, self.settings, settings)
+            self.course.script = place
+        self.settings = settings
         self.touched()
 
     def edit(self, command: Edit) -> None:
         """Make something; then one increment relaxes where things stand. Raises InputError where it cannot be done."""
-        made = edited(self.setup, self.values, command, self._course.next_label)
-        before = self._before_edit or (self.present(), self._course.copy())
-        course, friction = self._course, self.engine.friction
+        made = edited(self.setup, self.settings, command, self.course.next_label)
+        before = self._before_edit or (self.present(), self.course.copy())
+        course, friction = self.course, self.setup.friction
         if friction is not None:
             friction.rearrange(made.source)
             friction.forget_primitives(*made.forgotten)
@@ -120,12 +96,11 @@ class Run:
         course.edited, course.moving = True, self.setup.drag > 0.0
         course.remarks = Remarks()
         course.notices.clear()
-        self.setup.packing = made.packing
         self.setup.world.redraw(made.walls)
         self.engine.take_over(made.packing)
         pairs, bodies = self.engine.contacts()
-        self._last = replace(
-            self._last,
+        self.last = replace(
+            self.last,
             grain_contacts=pairs,
             body_contacts=bodies,
             reactions=self.engine.reactions,
@@ -136,7 +111,7 @@ class Run:
 
     def touched(self) -> None:
         """Something was changed between two increments: one relaxes where things stand, or a few until it is relaxed."""
-        self._course.touched = MOST_RELAXATIONS
+        self.course.touched = MOST_RELAXATIONS
         self._kept = None
 
     # Increments.
@@ -149,7 +124,7 @@ class Run:
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
-            targets = {} if self._course.touched else self.hands.next_targets()
+            targets = {} if self.course.touched else self.hands.next_targets()
             if not targets and self._still:
                 return False
             box = targets.pop(CELL, None)
@@ -164,27 +139,27 @@ class Run:
         if self._before_edit is not None and self._too_tight(increment):
             return True
         # What a change has done is nothing that the grains did.
-        before = None if self._course.touched else self._last
+        before = None if self.course.touched else self.last
         unfinished = increment.report.reason is StopReason.ITERATION_LIMIT
-        self._course.touched = max(self._course.touched - 1, 0) if unfinished else 0
-        self._last = increment
+        self.course.touched = max(self.course.touched - 1, 0) if unfinished else 0
+        self.last = increment
         earlier = None if before is None else Earlier(before, self.setup.packing.label)
-        tell_what_stopped(self._course, self.setup, increment)
+        self.course.tell_what_stopped(self.setup, increment)
         left = self._remove_those_gone()
-        follow_drive(self._course, self.setup, increment)
-        self._record(increment)
+        self.course.follow(self.setup, increment)
+        self._add_row(increment)
         if left:
-            row, course = self.history[-1], self._course
+            row, course = self.history[-1], self.course
             course.waited = row.stroke - course.last_exit[0]
             course.last_exit = row.stroke, row.resisting
-        self._course.moving = self._goes_on(left)
+        self.course.moving = self._goes_on(left)
         self._remark(None if left else before, earlier, left)
         self._keep()
         return True
 
     def _give_up(self, error: InputError) -> None:
         """An increment that cannot be begun: say why, and wait for the hand to ask for something else."""
-        course = self._course
+        course = self.course
         course.blocked.update(course.targets)
         course.script, course.moving, course.touched = None, False, 0
         self.say(message(error))
@@ -196,19 +171,18 @@ class Run:
             return False
         assert before is not None
         self.restore(before[0])
-        self._course = before[1]
+        self.course = before[1]
         self.say(TOO_TIGHT)
         return True
 
-    def _record(self, increment: Increment) -> None:
-        known = self.scene.accuracy
-        row = read_off(self._course, self.setup, increment, len(self.history), known)
-        self.history.append(row)
+    def _add_row(self, increment: Increment) -> None:
+        number, known = len(self.history), self.scene.accuracy
+        self.history.append(self.course.read_off(self.setup, increment, number, known))
 
     @property
     def _still(self) -> bool:
         """True if neither the script, nor the grains by themselves, nor a change want another increment."""
-        course = self._course
+        course = self.course
         return course.script is None and not course.moving and not course.touched
 
     def _goes_on(self, left: int) -> bool:
@@ -220,12 +194,12 @@ class Run:
 
     def _remark(self, before: Increment | None, earlier: Earlier | None, left: int) -> None:
         """Take down what the scene has to say about the newest increment, and what has begun in it."""
-        course = self._course
+        course = self.course
         at_rest = self.setup.drag > 0.0 and not course.moving
         curve = self.history.curve
         latest = Latest(
             before,
-            self._last,
+            self.last,
             curve,
             left,
             course.last_exit,
@@ -234,9 +208,9 @@ class Run:
             course.waited,
             course.initial,
         )
-        remarks, going_on = self.scene.remarks(self.setup, self.values, latest), course.remarks
+        remarks, going_on = self.scene.remarks(self.setup, self.settings, latest), course.remarks
         if self.locked:
-            remarks = locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
+            remarks = _locked(remarks, self.scene.what_holds(self.setup, latest), self.strength)
         course.remarks = remarks
         row = self.history[-1]
         for kind, text in remarks.happening.items():
@@ -250,15 +224,14 @@ class Run:
         """How many grains have left by the outlet in this increment."""
         if self.setup.outlet is None:
             return 0
-        gone = self.setup.outlet.gone(self.engine.packing)
+        gone = self.setup.outlet.gone(self.setup.packing)
         if gone.any():
-            self._course.out += int(gone.sum())
+            self.course.out += int(gone.sum())
             self.engine.remove(gone)
-            self.setup.packing = self.engine.packing
             pairs, bodies = self.engine.contacts()
-            unbalanced = self._last.unbalanced[~gone]
-            self._last = replace(
-                self._last, grain_contacts=pairs, body_contacts=bodies, unbalanced=unbalanced
+            unbalanced = self.last.unbalanced[~gone]
+            self.last = replace(
+                self.last, grain_contacts=pairs, body_contacts=bodies, unbalanced=unbalanced
             )
         return int(gone.sum())
 
@@ -267,7 +240,7 @@ class Run:
     @property
     def kept(self) -> Checkpoint | None:
         """The checkpoint of the state as it is: None if something was changed since, or is going to be by the script."""
-        return None if self._course.script is not None else self._kept
+        return None if self.course.script is not None else self._kept
 
     def present(self) -> Checkpoint:
         """A checkpoint of the state as it is: the same object as long as nothing has changed."""
@@ -294,24 +267,20 @@ class Run:
     def _checkpoint(self, before: Checkpoint | None) -> Checkpoint:
         return Checkpoint(
             engine=self.engine.save(None if before is None else before.engine),
-            course=self._course.copy(),
-            last=bare(self._last),
+            course=self.course.copy(),
+            last=bare(self.last),
             history=self.history,
             length=len(self.history),
-            values=self.values,
+            settings=self.settings,
         )
 
     def restore(self, kept: Checkpoint) -> None:
         """Be as at that checkpoint; what is kept of the past and the future of that state stays."""
-        setup, engine = self.setup, self.engine
-        engine.restore(kept.engine)
-        setup.packing, setup.solver = engine.packing, engine.settings
-        setup.gravity, setup.drag = engine.gravity, engine.drag
-        setup.friction = 0.0 if engine.friction is None else engine.friction.coefficient
-        self._course, self.values = kept.course.copy(), kept.values
+        self.engine.restore(kept.engine)
+        self.course, self.settings = kept.course.copy(), kept.settings
         self.history = kept.history.upto(kept.length)
-        pairs, bodies = engine.contacts()
-        self._last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
+        pairs, bodies = self.engine.contacts()
+        self.last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
         self.checkpoints.travel(kept)
         self._kept, self._before_edit = kept, None
 
@@ -321,33 +290,12 @@ class Run:
 
     # What can be seen.
 
-    def frame(self, can_undo: bool = False, can_redo: bool = False) -> Frame:
-        """A snapshot that shares nothing with the run."""
-        return take(
-            Shown(
-                scene=self.scene,
-                settings=self.values,
-                packing_kind=self.packing_kind,
-                seed=self.seed,
-                setup=self.setup,
-                engine=self.engine,
-                last=self._last,
-                history=self.history,
-                drive=self.setup.handles[0],
-                course=self._course,
-                kept=(self.checkpoints.first, self.checkpoints.last),
-                future=self.checkpoints.future(len(self.history)),
-                can_undo=can_undo,
-                can_redo=can_redo,
-            )
-        )
-
     def state_hash(self) -> str:
         """Hash of every bit of the packing, of where the bodies are, and of what frictional contacts remember."""
         placement = self.setup.world.placement().tobytes()
         digest = hashlib.sha256(self.setup.packing.hash().encode() + placement)
-        if self.engine.friction is not None:
-            digest.update(self.engine.friction.hash().encode())
+        if self.setup.friction is not None:
+            digest.update(self.setup.friction.hash().encode())
         for wall in self.setup.world.drawn:
             digest.update(wall.primitives().tobytes())
         return digest.hexdigest()
@@ -355,12 +303,12 @@ class Run:
     @property
     def locked(self) -> bool:
         """True if all the strength of the hand moves nothing."""
-        return self._course.stuck >= LOCKED_AFTER
+        return self.course.locked
 
     @property
     def how_locked(self) -> str:
         """Where a locked hand ended, in one line."""
-        course, way = self._course, self.way
+        course, way = self.course, self.way
         words = f"locked at {self.strength:g} k R"
         if way is not None:
             words += f" after {way:.1f} R of stroke"
@@ -380,7 +328,7 @@ class Run:
     @property
     def hand_force(self) -> float:
         """Of the latest increment, along its pull [k R]; nan where it pulled at nothing."""
-        return self._last.hand_force
+        return self.last.hand_force
 
     @property
     def strength(self) -> float:
@@ -390,7 +338,7 @@ class Run:
     @property
     def failed(self) -> bool:
         """True if the newest increment led to nothing that can be shown."""
-        return self._last.report.reason in FAILED
+        return self.last.report.reason in FAILED
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run; about what a person has made, only those that hold for any scene."""
@@ -401,7 +349,14 @@ class Run:
             grains_out=rows.column("grains_out"),
             residual=rows.column("residual"),
             converged=rows.column("stop_reason") == str(StopReason.CONVERGED),
-            initial_grains=self._course.initial,
+            initial_grains=self.course.initial,
         )
-        claims = self.scene.general_checks if self._course.edited else self.scene.checks
+        claims = self.scene.general_checks if self.course.edited else self.scene.checks
         return claims(self.setup, track)
+
+
+def _locked(remarks: Remarks, holding: Holding, strength: float) -> Remarks:
+    """What the scene has said, and that all the ``strength`` of the hand [k R] moves nothing, because of what holds."""
+    text = Text("locked at {strength:g} k R: {holding}", strength=strength, holding=holding.text)
+    grains = remarks.highlight if holding.grains is None else holding.grains
+    return Remarks((text,), grains, {**remarks.happening, "locked": text})

@@ -32,9 +32,10 @@ from sandbox.session.commands import (
     check,
 )
 from sandbox.session.frame import Frame
-from sandbox.session.history import History
+from sandbox.session.history import History, Row
 from sandbox.session.log import Log
 from sandbox.session.run import Run
+from sandbox.session.take_frame import take
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
 from scenes.parameter import check_seed
@@ -47,6 +48,10 @@ UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
 JOURNEYS = (Reset, Recall, Undo, Redo)
 
 Tell = Callable[[str, float], None]  # what is being built, and the share of it that is done
+
+
+def _go_on() -> None:
+    """Nobody wants to break the work off."""
 
 
 class Session:
@@ -98,7 +103,8 @@ class Session:
         if asked.file is not None:
             put_into(setup, asked.file)
         bodies = keep_bodies(setup.world)
-        start = Start(setup.packing.copy(), setup, bodies, asked)
+        friction = None if setup.friction is None else setup.friction.copy()
+        start = Start(setup.packing.copy(), friction, setup, bodies, asked)
         self._start, self._run = start, _first_run(asked, setup)
         report("ready", 1.0)
 
@@ -177,6 +183,7 @@ class Session:
         start = self._start
         assert start is not None
         start.setup.packing = start.packing.copy()
+        start.setup.friction = None if start.friction is None else start.friction.copy()
         place_bodies(start.setup.world, start.bodies)
         changed = {
             name for name, value in self.settings.items() if value != start.asked.settings[name]
@@ -196,7 +203,7 @@ class Session:
             self.run.checkpoints.squeeze(OLD_RUN_BYTES)
         self._start, self._run = moment.start, moment.run
         self._run.restore(moment.checkpoint)
-        self._run.hands.course.still()
+        self._run.course.still()
 
     def rebuilds(self, command: Command) -> bool:
         """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
@@ -262,13 +269,22 @@ class Session:
         self._finished += 1
         return True
 
-    def slices(self, iterations: int) -> Iterator[bool]:
+    def slices(self, iterations: int, check: Callable[[], None] = _go_on) -> Iterator[bool]:
         """Work, at most so many force evaluations at a time, until nothing is left to do; True where an increment was finished.
 
-        Whoever drives a session, a film, a replay, a study, looks at it in between.
+        Whoever drives a session, a film, a replay, a study, looks at it in between. ``check`` is called before each slice: what
+        it raises breaks the work off.
         """
+        check()
         while (finished := self.advance(iterations)) or not self.idle:
             yield finished
+            check()
+
+    def increments(self, iterations: int, check: Callable[[], None] = _go_on) -> Iterator[Row]:
+        """The same, for who looks at finished increments only: the newest row after each."""
+        for finished in self.slices(iterations, check):
+            if finished:
+                yield self.history[-1]
 
     # What can be seen.
 
@@ -290,7 +306,7 @@ class Session:
     @property
     def settings(self) -> Values:
         """All parameters as they are now."""
-        return self._first.settings if self._run is None else self._run.values
+        return self._first.settings if self._run is None else self._run.settings
 
     @property
     def history(self) -> History:
@@ -300,8 +316,7 @@ class Session:
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""
         now = self.run.kept
-        frame = self.run.frame(self._past.can_undo(now), self._past.can_redo)
-        return replace(frame, refusals=self._refusals[0], refusal=self._refusals[1])
+        return take(self.run, self._past.can_undo(now), self._past.can_redo, self._refusals)
 
     def state_hash(self) -> str:
         """Hash of every bit of the state."""
@@ -317,7 +332,7 @@ class Session:
         kept = self.run.settled
         scene, file = self.scene.name, self.file
         worth = bool(self._commands) or file is not None
-        return Made(scene, self.packing, self.seed, kept.values, kept.engine, file, worth)
+        return Made(scene, self.packing, self.seed, kept.settings, kept.engine, file, worth)
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""

@@ -3,59 +3,37 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.observables import grain_stress
 from core.packing import Packing, PeriodicBox
-from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
-from sandbox.session.course import Course
 from sandbox.session.frame import Ahead, BodyShape, Contacts, Frame, HandleState
 from sandbox.session.history import History
-from scenes.scene import Handle, Scene, Setup, Values
+from sandbox.session.run import Run
+from scenes.scene import Handle
 from scenes.text import Text
 
 
-@dataclass(frozen=True)
-class Shown:
-    """The parts of a session that a frame shows."""
-
-    scene: Scene
-    settings: Values
-    packing_kind: str
-    seed: int
-    setup: Setup
-    engine: Quasistatic
-    last: Increment
-    history: History
-    drive: Handle
-    course: Course
-    kept: tuple[int, int]  # first and last increment that can be recalled
-    future: History | None  # after a recall: the whole course of events that is kept
-    can_undo: bool
-    can_redo: bool
-
-
-def take(view: Shown) -> Frame:
-    """A snapshot of ``view`` that shares nothing with it."""
-    packing, box, curve = view.setup.packing, view.setup.packing.box, view.setup.curve
-    under_way = view.engine.progress()
-    last = view.last.report
-    highlight = view.course.remarks.highlight
+def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) -> Frame:
+    """A snapshot that shares nothing with the run; what its session knows besides: how many commands were refused, and why."""
+    packing, box, curve = run.setup.packing, run.setup.packing.box, run.setup.curve
+    under_way = run.engine.progress()
+    last = run.last.report
+    highlight = run.course.remarks.highlight
     state = packing.state.copy()
     state[:2] = packing.folded()
-    primitives, _ = view.setup.world.primitives()
-    stress = grain_stress(packing, view.last.grain_contacts, view.last.body_contacts, primitives)
+    primitives, _ = run.setup.world.primitives()
+    stress = grain_stress(packing, run.last.grain_contacts, run.last.body_contacts, primitives)
     return Frame(
-        scene=view.scene.name,
-        title=view.scene.title,
-        packing=view.packing_kind,
-        seed=view.seed,
-        increment=len(view.history) - 1,
+        scene=run.scene.name,
+        title=run.scene.title,
+        packing=run.packing_kind,
+        seed=run.seed,
+        increment=len(run.history) - 1,
         x=state[0],
         y=state[1],
         p=state[2],
@@ -66,41 +44,49 @@ def take(view: Shown) -> Frame:
         label=packing.label.copy(),
         pressure=stress[0],
         stress_difference=2.0 * np.hypot(stress[1], stress[2]),
-        motion=view.engine.own_motion(),
-        contacts=_contact_lines(view, packing, primitives, state[0], state[1]),
-        bodies=tuple(_shape(body, box) for body in view.setup.world.bodies),
-        handles=tuple(_handle_state(view, handle) for handle in view.setup.handles),
-        bounds=view.setup.bounds,
-        stroke=view.course.stroke,
-        grains_out=view.course.out,
+        motion=run.engine.own_motion(),
+        contacts=_contact_lines(run, packing, primitives, state[0], state[1]),
+        bodies=tuple(_shape(body, box) for body in run.setup.world.bodies),
+        handles=tuple(_handle_state(run, handle) for handle in run.setup.handles),
+        bounds=run.setup.bounds,
+        stroke=run.course.stroke,
+        grains_out=run.course.out,
         energy=last.energy,
         residual=last.residual,
-        tolerance=view.setup.solver.tolerance,
+        tolerance=run.setup.solver.tolerance,
         iterations=(last if under_way is None else under_way).iterations,
         stop_reason=str(last.reason),
         busy=under_way is not None,
-        protocol=view.course.script is not None,
-        notices=(*view.course.notices, *view.course.remarks.notices),
-        curve_stroke=view.history.curve[0],
-        curve_force=view.history.curve[1],
-        spin=None if view.engine.friction is None else view.engine.friction.spin.copy(),
-        curve_label=Text("force on the {label} [k R]", label=view.drive.label)
-        if curve is None
-        else curve.force_label,
+        protocol=run.course.script is not None,
+        notices=(*run.course.notices, *run.course.remarks.notices),
+        curve_stroke=run.history.curve[0],
+        curve_force=run.history.curve[1],
+        spin=None if run.setup.friction is None else run.setup.friction.spin.copy(),
+        curve_label=_force_label(run),
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
-        hand_limit=view.setup.solver.hand_strength if curve is None else math.inf,
+        hand_limit=run.setup.solver.hand_strength if curve is None else math.inf,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
-        residual_force=view.last.unbalanced.copy(),
-        force_error=_force_error(view.history),
-        settings=dict(view.settings),
-        first_kept=view.kept[0],
-        last_kept=view.kept[1],
-        can_undo=view.can_undo,
-        can_redo=view.can_redo,
-        events=view.history.events,
-        ahead=_ahead(view),
+        residual_force=run.last.unbalanced.copy(),
+        force_error=_force_error(run.history),
+        settings=dict(run.settings),
+        first_kept=run.checkpoints.first,
+        last_kept=run.checkpoints.last,
+        can_undo=can_undo,
+        can_redo=can_redo,
+        refusals=refusals[0],
+        refusal=refusals[1],
+        events=run.history.events,
+        ahead=_ahead(run),
     )
+
+
+def _force_label(run: Run) -> str:
+    """What is plotted against the stroke."""
+    curve = run.setup.curve
+    if curve is not None:
+        return curve.force_label
+    return Text("force on the {label} [k R]", label=run.setup.handles[0].label)
 
 
 def _force_error(history: History) -> float:
@@ -109,25 +95,26 @@ def _force_error(history: History) -> float:
     return history[-1].force_error / scale if scale > 0.0 else math.nan
 
 
-def _ahead(view: Shown) -> Ahead | None:
+def _ahead(run: Run) -> Ahead | None:
     """What is kept of later increments."""
-    if view.future is None:
+    future = run.checkpoints.future(len(run.history))
+    if future is None:
         return None
-    shown, last = len(view.history), view.kept[1]
-    stroke, force = view.future.curve[:, shown : last + 1]
-    later = tuple(e for e in view.future.events if shown <= e.increment <= last)
+    so_far, last = len(run.history), run.checkpoints.last
+    stroke, force = future.curve[:, so_far : last + 1]
+    later = tuple(e for e in future.events if so_far <= e.increment <= last)
     return Ahead(stroke, force, later)
 
 
 def _contact_lines(
-    view: Shown,
+    run: Run,
     packing: Packing,
     primitives: NDArray[np.float64],
     x: NDArray[np.float64],
     y: NDArray[np.float64],
 ) -> Contacts:
     """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
-    pairs, bodies = view.last.grain_contacts, view.last.body_contacts
+    pairs, bodies = run.last.grain_contacts, run.last.body_contacts
     grain_x, grain_y = x[bodies.grain], y[bodies.grain]
     body_x = bodies.x + grain_x - packing.x[bodies.grain]
     body_y = bodies.y + grain_y - packing.y[bodies.grain]
@@ -147,18 +134,18 @@ def _contact_lines(
     )
 
 
-def _handle_state(view: Shown, handle: Handle) -> HandleState:
-    box = view.setup.packing.box
-    target = view.course.targets.get(handle.body)
+def _handle_state(run: Run, handle: Handle) -> HandleState:
+    box = run.setup.packing.box
+    target = run.course.targets.get(handle.body)
     if handle.body == "box" and box is not None:
-        at = view.setup.box_handle
+        at = run.setup.box_handle
         place = (box.width, box.height) if at is None else at(box)
         x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
         return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
-    body = view.setup.world[handle.body]
-    push = view.last.reactions[view.setup.world.index(handle.body), :2]
+    body = run.setup.world[handle.body]
+    push = run.last.reactions[run.setup.world.index(handle.body), :2]
     # The hand's force along its pull, as it is plotted; what goes across is borne by the guide.
-    along = view.course.direction if body.axis is None else body.axis
+    along = run.course.direction if body.axis is None else body.axis
     fx, fy = -float(np.dot(push, along)) * np.array(along)
     x, target = _nearest_image(body.position[0], target, box)
     return HandleState(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from core.engine_state import BodyState
 from core.errors import InputError
+from core.friction import Friction
 from core.packing import Packing
 from sandbox.session.beginning import Asked
 from sandbox.session.checkpoints import MOST_BYTES, Checkpoint
@@ -24,6 +25,7 @@ class Start:
     """What a reset goes back to."""
 
     packing: Packing
+    friction: Friction | None
     setup: Setup
     bodies: tuple[BodyState, ...]
     asked: Asked

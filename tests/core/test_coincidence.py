@@ -13,13 +13,14 @@ from core.quasistatic import Quasistatic
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
+from core.system import System
 
 BOX = PeriodicBox(12.0, 12.0)
 
 
 def relaxed(packing: Packing, friction: float = 0.0, times: int = 2) -> Quasistatic:
     rubbing = Friction(friction, len(packing)) if friction else None
-    engine = Quasistatic(packing, RigidWorld(), Settings(tolerance=1e-4), rubbing)
+    engine = Quasistatic(System(packing, RigidWorld(), Settings(tolerance=1e-4), rubbing))
     for _ in range(times):
         engine.begin({})
         done = engine.relax(10_000)
@@ -57,7 +58,7 @@ def test_only_those_at_one_place_are_touched_and_hardly() -> None:
 
 def test_a_grain_in_the_middle_of_a_disc_is_pushed_out() -> None:
     disc = RigidBody("disc", "intruder", position=(4.0, 4.0), discs=[(0.0, 0.0, 2.0)])
-    engine = Quasistatic(Packing([4.0], [4.0]), RigidWorld([disc]))
+    engine = Quasistatic(System(Packing([4.0], [4.0]), RigidWorld([disc])))
     for _ in range(2):
         engine.begin({})
         done = engine.relax(10_000)

@@ -11,6 +11,7 @@ from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidWorld, wall
 from core.settings import Settings
+from core.system import System
 
 GRAVITY, FALL = 0.01, 0.1
 
@@ -21,7 +22,7 @@ def fall(count: int) -> tuple[Quasistatic, list[float]]:
     packing = Packing([0.0, 30.0], [1.45, 50.0], [1.0, 0.7], [0.5, -0.5])
     settings = Settings(tolerance=1e-8)
     engine = Quasistatic(
-        packing, RigidWorld([floor]), settings, gravity=(0.0, -GRAVITY), drag=GRAVITY / FALL
+        System(packing, RigidWorld([floor]), settings, gravity=(0.0, -GRAVITY), drag=GRAVITY / FALL)
     )
     heights = []
     for _ in range(count):
@@ -42,7 +43,7 @@ def test_a_free_grain_falls_as_far_as_said_whatever_its_size() -> None:
 def test_at_rest_drag_is_gone() -> None:
     engine, heights = fall(12)
     assert abs(heights[-1] - heights[-2]) < 1e-6
-    engine.packing = engine.packing.select(np.array([True, False]))
+    engine.system.packing = engine.packing.select(np.array([True, False]))
     still = Relaxation(
         engine.packing, engine.world.primitives()[0], None, (0.0, -GRAVITY), tolerance=1e-8
     )

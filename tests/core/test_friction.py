@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from core import fire, observables, reference_friction
+from core import fire, observables
 from core.errors import InputError
 from core.friction import (
     TANGENTIAL_STIFFNESS,
@@ -26,7 +26,8 @@ from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
-from tests.core import examples
+from core.system import System
+from tests.core import examples, reference_friction
 
 Floats = examples.Floats
 EPSILON = float(np.finfo(np.float64).eps)
@@ -212,7 +213,7 @@ def test_stress_counts_friction() -> None:
     """
     packing, world = box_of_grains()
     settings = Settings(0.05, 1e-9, force_floor=1e-6, max_iterations=50_000)
-    engine = Quasistatic(packing, world, settings, Friction(MU, len(packing)))
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
     for k in range(40):
         engine.begin({"plate": (min(0.05 * k, 0.2), world["plate"].position[1])})
         increment = engine.relax(50_000)
@@ -465,7 +466,7 @@ def sheared(slices: list[int], skin: float = 0.3) -> Quasistatic:
     """The plate goes forth by 0.25 R; every increment cut into slices of so many iterations."""
     packing, world = box_of_grains()
     settings = Settings(step=0.05, tolerance=1e-4, skin=skin, max_iterations=20_000)
-    engine = Quasistatic(packing, world, settings, Friction(MU, len(packing)))
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
     for _ in range(6):
         engine.begin({"plate": (0.25, world["plate"].position[1])})
         turn = 0
@@ -529,7 +530,7 @@ def test_a_failed_increment_leaves_memory_and_spins(reason: StopReason) -> None:
 def test_off_leaves_no_trace() -> None:
     """No spin, no arrays, and kernels without the term."""
     packing, world = box_of_grains()
-    engine = Quasistatic(packing, world, CAREFUL)
+    engine = Quasistatic(System(packing, world, CAREFUL))
     engine.begin({"plate": (0.05, world["plate"].position[1])})
     relaxation = engine._relaxation
     assert relaxation is not None
@@ -581,7 +582,7 @@ def test_nan_is_found(row: int) -> None:
 def test_no_contacts(count: int) -> None:
     packing = Packing(np.zeros(count), np.zeros(count))
     world = RigidWorld([RigidBody("far", position=(50.0, 0.0), discs=[(0.0, 0.0, 1.0)], held=True)])
-    engine = Quasistatic(packing, world, CAREFUL, Friction(MU, count))
+    engine = Quasistatic(System(packing, world, CAREFUL, Friction(MU, count)))
     engine.begin({"far": (49.0, 0.0)})
     increment = engine.relax(100)
     assert increment is not None

@@ -14,6 +14,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
+from core.system import System
 from tests.core import examples
 
 MU = 0.4
@@ -30,7 +31,7 @@ def go(
         assert engine._frozen is not None
         engine._frozen.terms.arm_i[:] = 0.0
         engine._frozen.terms.arm_j[:] = 0.0
-    increment = engine.relax(engine.settings.max_iterations)
+    increment = engine.relax(engine.system.solver.max_iterations)
     assert increment is not None
     if converges:
         assert increment.report.reason is StopReason.CONVERGED
@@ -54,11 +55,11 @@ def pulled(gx: float, weight: float, mu: float) -> tuple[float, Increment]:
     packing = Packing([0.0], [1.0], 1.0, 0.3, STIFFNESS)
     settings = Settings(0.05, 1e-7, force_floor=1e-6, max_iterations=4_000)
     world = RigidWorld([plate("floor", 0.0, (1.0, 0.0))])
-    engine = Quasistatic(packing, world, settings, Friction(mu, 1), (0.0, -weight))
+    engine = Quasistatic(System(packing, world, settings, Friction(mu, 1), (0.0, -weight)))
     go(engine, {}, rolls=False)
     go(engine, {}, rolls=False)
     start = float(packing.x[0])
-    engine.gravity = (gx, -weight)
+    engine.system.gravity = (gx, -weight)
     increment = go(engine, {}, rolls=False, converges=False)
     return float(packing.x[0]) - start, increment
 
@@ -122,7 +123,9 @@ def square(side: int, mu: float | None, pitch: float = 1.75) -> Quasistatic:
     ]
     world = RigidWorld([plate("floor", low, (1.0, 0.0)), plate("lid", high, (1.0, 0.0)), *upright])
     friction = None if mu is None else Friction(mu, count)
-    engine = Quasistatic(packing, world, Settings(0.2, 1e-8, max_iterations=50_000), friction)
+    engine = Quasistatic(
+        System(packing, world, Settings(0.2, 1e-8, max_iterations=50_000), friction)
+    )
     settle(engine)
     return engine
 
@@ -175,7 +178,7 @@ def test_rolling_without_slip(nu: float) -> None:
     packing = Packing([0.0], [0.9], 1.0, nu, STIFFNESS)
     world = RigidWorld([plate("floor", 0.0, (1.0, 0.0)), plate("top", 1.8, (1.0, 0.0))])
     settings = Settings(0.05, 1e-8, force_floor=1e-6, max_iterations=20_000)
-    engine = Quasistatic(packing, world, settings, Friction(MU, 1))
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, 1)))
     go(engine, {})
     half_height = float(observables.support_coefficients(packing)[:2, 0] @ [1.0, -1.0]) ** 0.5
     for k in range(30):
@@ -252,7 +255,9 @@ def test_a_peg_pushed_forth_and_back(mu: float | None) -> None:
     )
     world = RigidWorld([*engine.world.bodies, peg])
     friction = None if mu is None else Friction(mu, 24)
-    engine = Quasistatic(engine.packing.select(~middle), world, engine.settings, friction)
+    engine = Quasistatic(
+        System(engine.packing.select(~middle), world, engine.system.solver, friction)
+    )
     settle(engine)
     work, rise, least = cycle(engine, "peg", 0.02, 64)
     if mu is None:
@@ -278,7 +283,7 @@ def curved_path(steps: int) -> float:
     packing = Packing([0.0], [0.95], 1.0, 0.3, STIFFNESS)
     world = RigidWorld([plate("floor", 0.0, (1.0, 0.0)), plate("top", 1.9, (0.0, 1.0))])
     settings = Settings(0.2, 1e-9, force_floor=1e-6, max_iterations=50_000)
-    engine = Quasistatic(packing, world, settings, Friction(MU, 1))
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, 1)))
     go(engine, {}, rolls=False)
     for k in range(1, steps + 1):
         s = k / steps
@@ -296,7 +301,7 @@ def curved_path_exactly() -> float:
     """
     packing = Packing([0.0], [0.95], 1.0, 0.3, STIFFNESS)
     world = RigidWorld([plate("floor", 0.0, (1.0, 0.0)), plate("top", 1.9, (0.0, 1.0))])
-    engine = Quasistatic(packing, world, Settings(0.2, 1e-9, 1e-6, max_iterations=50_000))
+    engine = Quasistatic(System(packing, world, Settings(0.2, 1e-9, 1e-6, max_iterations=50_000)))
     s = np.linspace(0.0, 1.0, 65)
     heights = (1.9 - 0.15 * s + 0.2 * s * s * (1.0 - s)).tolist()
     normal = [-float(go(engine, {"top": (0.0, y)}).reactions[0, 1]) for y in heights]

@@ -7,14 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from core import fire, observables, reference_friction
+from core import fire, observables
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
-from tests.core import examples
+from core.system import System
+from tests.core import examples, reference_friction
 
 G = 0.05  # [k/R]
 TOLERANCE = 1e-7
@@ -29,7 +30,7 @@ def rest(engine: Quasistatic, rounds: int = 1) -> observables.RigidContacts:
     """Let everything come to rest."""
     for _ in range(rounds):
         engine.begin({})
-        increment = engine.relax(engine.settings.max_iterations)
+        increment = engine.relax(engine.system.solver.max_iterations)
         assert increment is not None
         assert increment.report.reason is StopReason.CONVERGED
     return engine.contacts()[1]
@@ -72,7 +73,9 @@ def column(count: int, nu: float) -> tuple[Quasistatic, examples.Floats]:
     radius: examples.Floats = 0.8 + 0.1 * np.arange(count, dtype=np.float64) % 0.4
     y = np.cumsum(2.0 * radius) - radius
     packing = Packing(np.zeros(count), y, radius, nu)
-    return Quasistatic(packing, RigidWorld([floor()]), CAREFUL, gravity=(0.0, -G)), G * radius**2
+    return Quasistatic(
+        System(packing, RigidWorld([floor()]), CAREFUL, gravity=(0.0, -G))
+    ), G * radius**2
 
 
 @pytest.mark.parametrize("nu", [-0.8, 0.0, 0.8])
@@ -111,7 +114,7 @@ def test_pressure_grows_with_depth_without_walls_that_rub() -> None:
     count = len(x)
     packing = Packing(x, y, 1.0, np.tile([0.8, -0.5], count // 2))
     world = RigidWorld([floor(), *walls])
-    engine = Quasistatic(packing, world, CAREFUL, gravity=(0.0, -G))
+    engine = Quasistatic(System(packing, world, CAREFUL, gravity=(0.0, -G)))
     rest(engine)
     weight = G * count
     balance = count * TOLERANCE
@@ -140,7 +143,7 @@ def test_walls_that_rub_carry_weight() -> None:
     ]
     packing = Packing(x, y, 1.0, 0.5)
     world = RigidWorld([floor(), *walls])
-    engine = Quasistatic(packing, world, CAREFUL, Friction(0.5, len(packing)), (0.0, -G))
+    engine = Quasistatic(System(packing, world, CAREFUL, Friction(0.5, len(packing)), (0.0, -G)))
     rest(engine, 6)
     weight = G * len(packing)
     assert engine.reactions[:, 1].sum() == pytest.approx(-weight, abs=1e-5)
@@ -154,7 +157,7 @@ def test_a_free_grain_falls_to_the_floor(height: float, mu: float | None) -> Non
     """It comes to rest where the floor carries it: C Δ = weight, and never goes through however long it falls."""
     packing = Packing([0.3], [height], 1.0, 0.2, 50.0)
     friction = None if mu is None else Friction(mu, 1)
-    engine = Quasistatic(packing, RigidWorld([floor()]), CAREFUL, friction, (0.0, -G))
+    engine = Quasistatic(System(packing, RigidWorld([floor()]), CAREFUL, friction, (0.0, -G)))
     contacts = rest(engine)
     assert contacts.overlap == pytest.approx([G / 50.0], rel=1e-6)
     assert packing.x[0] == pytest.approx(0.3, abs=1e-12)
@@ -167,7 +170,9 @@ def test_a_free_grain_falls_to_the_floor(height: float, mu: float | None) -> Non
 def test_nothing_to_hold_it() -> None:
     """A grain with no floor falls until the iterations are used up; that is said, and all stays finite."""
     packing = Packing([0.0], [0.0])
-    engine = Quasistatic(packing, RigidWorld(), Settings(max_iterations=500), gravity=(0.0, -G))
+    engine = Quasistatic(
+        System(packing, RigidWorld(), Settings(max_iterations=500), gravity=(0.0, -G))
+    )
     engine.begin({})
     increment = engine.relax(1000)
     assert increment is not None
@@ -186,7 +191,7 @@ def test_direction_does_not_matter() -> None:
         tilted = Packing(-s * upright.y, c * upright.y, upright.rest_radius, 0.3)
         world = RigidWorld([floor()])
         world["floor"].angle = angle
-        engine = Quasistatic(tilted, world, CAREFUL, gravity=(G * s, -G * c))
+        engine = Quasistatic(System(tilted, world, CAREFUL, gravity=(G * s, -G * c)))
         rest(engine)
         heights.append(-s * tilted.x + c * tilted.y)
         assert np.abs(c * tilted.x + s * tilted.y).max() < 1e-6

@@ -19,6 +19,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from core.settings import MACHINE, Settings
+from core.system import System
 
 BOX: list[Point] = [(0.0, 0.0), (12.0, 0.0), (12.0, 9.0), (0.0, 9.0)]
 _PACKED: dict[tuple[str, str], Packing] = {}
@@ -42,7 +43,7 @@ def scene(body: str, kind: str, friction: float = 0.0, **solver: float) -> Quasi
         )
     grains = _PACKED[body, kind].copy()
     memory = Friction(friction, len(grains)) if friction else None
-    return Quasistatic(grains, world, Settings(**solver), memory)  # type: ignore[arg-type]
+    return Quasistatic(System(grains, world, Settings(**solver), memory))  # type: ignore[arg-type]
 
 
 def increment(run: Quasistatic, targets: dict[str, Point], slices: int = 10**9) -> Increment:
@@ -106,7 +107,8 @@ def test_a_hand_that_has_become_too_weak_gives_way() -> None:
         if done.moved["piston"] == (0.0, 0.0):
             break
     deep = run.world["piston"].position[1]
-    run.adjust(Settings(step=0.05, hand_strength=2.0), 0.0, None, 0.0)
+    run.system.solver = Settings(step=0.05, hand_strength=2.0)
+    run.look_again()
     for _ in range(60):
         done = increment(run, {"piston": (0.0, -99.0)})
     assert run.world["piston"].position[1] > deep
@@ -164,14 +166,14 @@ def test_the_force_on_a_cell_is_the_slope_of_the_energy(way: tuple[float, float,
     def energy(sign: float) -> float:
         assert cell.box is not None
         sides = np.array([cell.box.width, cell.box.height, cell.box.shift])
-        run = Quasistatic(cell.copy(), RigidWorld(), Settings(tolerance=1e-9, step=0.05))
+        run = Quasistatic(System(cell.copy(), RigidWorld(), Settings(tolerance=1e-9, step=0.05)))
         run.begin({}, PeriodicBox(*(sides + sign * tiny * np.array(way)).tolist()))
         while (done := run.relax(10**9)) is None:
             pass
         return done.report.energy
 
     slope = (energy(1.0) - energy(-1.0)) / (2.0 * tiny * length)
-    pairs = Quasistatic(cell.copy(), RigidWorld(), Settings()).contacts()[0]
+    pairs = Quasistatic(System(cell.copy(), RigidWorld(), Settings())).contacts()[0]
     assert force_on_box(pairs, cell.box, way) == pytest.approx(slope, rel=2e-4, abs=1e-6)
 
 
@@ -179,7 +181,7 @@ def test_a_hand_on_a_cell_stops_at_its_strength() -> None:
     cell = jammed_cell()
     assert cell.box is not None
     side = cell.box.width
-    run = Quasistatic(cell, RigidWorld(), Settings(step=0.1, hand_strength=2.5))
+    run = Quasistatic(System(cell, RigidWorld(), Settings(step=0.1, hand_strength=2.5)))
     assert force_on_box(run.contacts()[0], cell.box, (-1.0, -1.0, 0.0)) < 2.5
     forces, stopped = [], {}
     for _ in range(60):

@@ -12,6 +12,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
+from core.system import System
 
 PLATE = ((-3.0, 0.0), (3.0, 0.0), (3.0, 1.0), (-3.0, 1.0))
 
@@ -27,7 +28,7 @@ def press(stiffness: float, step: float = 0.05) -> Quasistatic:
     )
     floor = RigidBody("floor", segments=[(-4.0, -0.5, 4.0, -0.5, 0.5)])
     packing = Packing([0.0], [1.0], 1.0, 0.8, stiffness)
-    return Quasistatic(packing, RigidWorld([lid, floor]), Settings(step=step))
+    return Quasistatic(System(packing, RigidWorld([lid, floor]), Settings(step=step)))
 
 
 def increment(engine: Quasistatic, y: float) -> Increment:
@@ -76,7 +77,7 @@ def test_a_grain_that_is_in_a_wall_already_is_let_out() -> None:
 
 def test_an_increment_that_cannot_be_begun_moves_nothing() -> None:
     packing = Packing([1.0, 3.0], [1.0, 3.0], box=PeriodicBox(4.7, 4.7))
-    engine = Quasistatic(packing, RigidWorld(), Settings(skin=0.1))
+    engine = Quasistatic(System(packing, RigidWorld(), Settings(skin=0.1)))
     with pytest.raises(InputError, match="box is too small"):
         for _ in range(20):
             state, box = packing.state.copy(), packing.box
@@ -94,7 +95,7 @@ def test_units_of_length_make_no_difference(unit: float) -> None:
     random = np.random.default_rng(1)
     x, y = random.uniform(0.0, 9.0, (2, 30))
     packing = Packing(x * unit, y * unit, unit, 0.5, box=PeriodicBox(9.0 * unit, 9.0 * unit))
-    engine = Quasistatic(packing, RigidWorld(), Settings(min(0.05, 0.1 * unit), 1e-9))
+    engine = Quasistatic(System(packing, RigidWorld(), Settings(min(0.05, 0.1 * unit), 1e-9)))
     engine.begin({})
     done = engine.relax(100_000)
     assert done is not None
@@ -108,7 +109,7 @@ def test_units_of_length_make_no_difference(unit: float) -> None:
 @pytest.mark.parametrize("gravity", [(0.0, -50.0), (1e300, 0.0), (float("nan"), 0.0)])
 def test_weights_that_no_contact_can_bear_are_refused(gravity: tuple[float, float]) -> None:
     with pytest.raises(InputError, match="gravity must be less than 50 k/R"):
-        Quasistatic(Packing([0.0], [1.0]), RigidWorld(), gravity=gravity)
+        Quasistatic(System(Packing([0.0], [1.0]), RigidWorld(), gravity=gravity))
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
+from core.system import System
 from tests.core import examples
 
 Floats = examples.Floats
@@ -80,7 +81,9 @@ def drive(
     packing: Packing, world: RigidWorld, targets: dict[str, tuple[float, float]], mu: float
 ) -> tuple[Quasistatic, list[Increment]]:
     friction = Friction(mu, len(packing)) if mu else None
-    engine = Quasistatic(packing, world, Settings(0.04, 1e-6, max_iterations=30_000), friction)
+    engine = Quasistatic(
+        System(packing, world, Settings(0.04, 1e-6, max_iterations=30_000), friction)
+    )
     done = []
     for _ in range(4):
         engine.begin(targets)
@@ -154,7 +157,7 @@ def settle(packing: Packing, tolerance: float = 1e-10) -> float:
 def step_box(packing: Packing, target: PeriodicBox, mu: float = 0.0) -> Quasistatic:
     """One increment towards ``target``, begun and not relaxed."""
     friction = Friction(mu, len(packing)) if mu else None
-    engine = Quasistatic(packing, RigidWorld(), Settings(0.05, 1e-8), friction)
+    engine = Quasistatic(System(packing, RigidWorld(), Settings(0.05, 1e-8), friction))
     engine.begin({}, target)
     return engine
 
@@ -262,7 +265,9 @@ def test_a_small_cycle_returns() -> None:
     packing = dense()
     start = packing.copy()
     energy = settle(packing)
-    engine = Quasistatic(packing, RigidWorld(), Settings(0.002, 1e-9, max_iterations=100_000))
+    engine = Quasistatic(
+        System(packing, RigidWorld(), Settings(0.002, 1e-9, max_iterations=100_000))
+    )
     ways = [PeriodicBox(10.996, 9.998, 1.304), CELL]
     for way in ways:
         for _ in range(3):
@@ -296,7 +301,7 @@ def test_frictional_contacts_across_the_edge_slip_like_others() -> None:
     for one in (packing, scattered):
         friction = Friction(0.5, len(one))
         engine = Quasistatic(
-            one, RigidWorld(), Settings(0.02, 1e-8, max_iterations=100_000), friction
+            System(one, RigidWorld(), Settings(0.02, 1e-8, max_iterations=100_000), friction)
         )
         for _ in range(3):
             engine.begin({}, PeriodicBox(CELL.width + 0.03, CELL.height - 0.03, CELL.shift + 0.05))

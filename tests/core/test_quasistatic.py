@@ -15,6 +15,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import StopReason
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from core.settings import LONGEST_STEP, Settings
+from core.system import System
 
 BOX: list[Point] = [(0.0, 0.0), (14.0, 0.0), (14.0, 10.0), (0.0, 10.0)]
 RADIUS = 1.6
@@ -32,7 +33,7 @@ def scene(packing_fraction: float = 0.86, **settings: float) -> Quasistatic:
         _PACKED[packing_fraction] = generate.pack(
             Recipe(), seed=3, outline=BOX, world=world, packing_fraction=packing_fraction
         )
-    return Quasistatic(_PACKED[packing_fraction].copy(), world, Settings(**settings))  # type: ignore[arg-type]
+    return Quasistatic(System(_PACKED[packing_fraction].copy(), world, Settings(**settings)))  # type: ignore[arg-type]
 
 
 def increment(run: Quasistatic, targets: dict[str, Point], slices: int = 10**9) -> Increment:
@@ -134,7 +135,7 @@ def test_the_guess_does_not_change_the_answer() -> None:
 def test_a_free_grain_stays_where_it_was_left() -> None:
     """Pushed by the intruder, then left: there is no inertia, whatever the predictor makes of the push."""
     intruder = RigidBody("intruder", "intruder", discs=[(0.0, 0.0, 1.5)], held=True)
-    run = Quasistatic(Packing([2.6], [0.1]), RigidWorld([intruder]), Settings(step=0.1))
+    run = Quasistatic(System(Packing([2.6], [0.1]), RigidWorld([intruder]), Settings(step=0.1)))
     for _ in range(8):
         increment(run, {"intruder": (9.0, 0.0)})
     pushed = run.packing.state.copy()
@@ -202,7 +203,7 @@ def test_a_failed_increment_leaves_the_last_good_state() -> None:
         axis=(0.0, 1.0),
     )
     floor = RigidBody("floor", segments=[(-3.0, 0.0, 3.0, 0.0, 0.1)])
-    run = Quasistatic(Packing([0.0], [1.1]), RigidWorld([floor, plate]), Settings(step=0.2))
+    run = Quasistatic(System(Packing([0.0], [1.1]), RigidWorld([floor, plate]), Settings(step=0.2)))
     for _ in range(30):
         state, placement = run.packing.state.copy(), run.world.placement()
         done = increment(run, {"plate": (0.0, -9.0)})
@@ -239,9 +240,9 @@ def test_impossible_steps(settings: dict[str, float]) -> None:
 
 def test_steps_are_small_against_the_smallest_grain() -> None:
     grains = Packing([0.0, 5.0], [0.0, 0.0], [1.0, 0.5])
-    Quasistatic(grains, RigidWorld(), Settings(step=0.5 * LONGEST_STEP))
+    Quasistatic(System(grains, RigidWorld(), Settings(step=0.5 * LONGEST_STEP)))
     with pytest.raises(InputError, match="smallest radius"):
-        Quasistatic(grains, RigidWorld(), Settings(step=0.51 * LONGEST_STEP))
+        Quasistatic(System(grains, RigidWorld(), Settings(step=0.51 * LONGEST_STEP)))
 
 
 def test_an_increment_needs_an_iteration() -> None:
@@ -252,7 +253,7 @@ def test_an_increment_needs_an_iteration() -> None:
 def test_what_a_changing_cell_does_to_grains_is_not_their_own_motion() -> None:
     """Free grains go with the cell; two that come to touch move beyond that, apart from each other."""
     cell = PeriodicBox(10.0, 10.0)
-    run = Quasistatic(Packing([2.0, 4.005, 7.0], [3.0, 3.0, 8.0], box=cell), RigidWorld([]))
+    run = Quasistatic(System(Packing([2.0, 4.005, 7.0], [3.0, 3.0, 8.0], box=cell), RigidWorld([])))
     before = run.packing.state.copy()
     run.begin({}, PeriodicBox(9.95, 9.95, 0.02))
     while run.relax(1_000) is None:

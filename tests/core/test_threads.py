@@ -19,6 +19,7 @@ from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
 from core.sweeps import CHUNK
+from core.system import System
 from tests.core import examples
 
 MOST = threads.most_threads()
@@ -96,11 +97,13 @@ def test_an_increment_with_friction_on_two_threads() -> None:
             axis=(0.0, 1.0),
         )
         engine = Quasistatic(
-            packing,
-            RigidWorld([plate]),
-            Settings(threads=number, max_iterations=300),
-            Friction(0.5, count),
-            (0.0, -1e-3),
+            System(
+                packing,
+                RigidWorld([plate]),
+                Settings(threads=number, max_iterations=300),
+                Friction(0.5, count),
+                (0.0, -1e-3),
+            )
         )
         energies = []
         for step in (1, 2):

@@ -69,7 +69,7 @@ def test_the_page_of_keys(
     places = draw_help(renderer.painter())
     scroll = 0
     while scroll < places.most_scroll:  # what does not fit is seen by scrolling
-        scroll = min(scroll + places.view.height // 2, places.most_scroll)
+        scroll = min(scroll + places.opening.height // 2, places.most_scroll)
         places = draw_help(renderer.painter(), scroll)
     nothing_cut(texts, size)
     for _, rows in words.help_groups():

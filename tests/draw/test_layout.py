@@ -154,7 +154,7 @@ def test_anything_in_the_menu_can_be_scrolled_into_view(
         scroll = places.scroll_to(name, scroll)
         shown = places.shown(name, scroll)
         assert shown is not None
-        assert places.view.contains(shown)
+        assert places.opening.contains(shown)
 
 
 @settings(max_examples=30, deadline=None)

@@ -15,12 +15,12 @@ from sandbox.draw.theme import (
     THEMES,
     Theme,
     channels,
-    contrast,
     magnitude_colours,
     mix,
     packing_colour,
     theme_named,
 )
+from tests.draw.contrast import contrast
 
 ALL = pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
 

@@ -13,12 +13,13 @@ from core.errors import InputError
 from sandbox.draw.layout import layout
 from sandbox.draw.legend import draw_header
 from sandbox.draw.render import Renderer
-from sandbox.draw.theme import DARK, LIGHT, Theme, channels, contrast
+from sandbox.draw.theme import DARK, LIGHT, Theme, channels
 from sandbox.draw.views import KIND, VIEWS, area_lost, motion, shape, view_after, view_named
 from sandbox.draw.world import Look, made_angle
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.words import words
+from tests.draw.contrast import contrast
 from tests.draw.frames import empty_frame, hopper_frame, intruder_frame, periodic_frame
 
 MEASURED = [name for name, view in VIEWS.items() if view.measure is not None]

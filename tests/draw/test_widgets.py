@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import Type
-from sandbox.draw.theme import MIXED, THEMES, contrast, mix, theme_named
+from sandbox.draw.theme import MIXED, THEMES, mix, theme_named
 from sandbox.draw.widgets.controls import (
     TARGET,
     Button,
@@ -41,6 +41,7 @@ from sandbox.draw.widgets.panel_frame import foot_height, panel_picture
 from sandbox.draw.widgets.scale import Range, shown, typed
 from sandbox.words import language
 from scenes import registry
+from tests.draw.contrast import contrast
 
 GOLDEN = Path(__file__).parent / "golden"
 LEVELS = 2  # a processor may round the last bit of a distance differently

@@ -29,7 +29,7 @@ def finish(session: Session) -> None:
 def test_every_kind_of_packing_starts_at_the_same_pressure() -> None:
     for kind in ("regular", "auxetic", "mixed"):
         run = cell(kind).run
-        assert pressure(run.setup.packing, run._last) == pytest.approx(PRESSURE, rel=0.03)
+        assert pressure(run.setup.packing, run.last) == pytest.approx(PRESSURE, rel=0.03)
 
 
 def test_stress_resists_the_shift_and_the_tensor_is_symmetric() -> None:
@@ -42,9 +42,9 @@ def test_stress_resists_the_shift_and_the_tensor_is_symmetric() -> None:
     run = session.run
     box = run.setup.packing.box
     assert box is not None
-    tensor = observables.stress(run._last.grain_contacts, box.area)
+    tensor = observables.stress(run.last.grain_contacts, box.area)
     assert tensor[0, 1] == pytest.approx(tensor[1, 0], abs=1e-4 * PRESSURE)
-    assert shear_stress(run.setup.packing, run._last) == pytest.approx(-tensor[0, 1], abs=1e-5)
+    assert shear_stress(run.setup.packing, run.last) == pytest.approx(-tensor[0, 1], abs=1e-5)
 
 
 def test_an_avalanche_is_announced_and_its_grains_pointed_at() -> None:
@@ -52,7 +52,7 @@ def test_an_avalanche_is_announced_and_its_grains_pointed_at() -> None:
     session.submit(Protocol(True))
     told = 0
     while not session.idle:
-        before = session.run._last
+        before = session.run.last
         if not session.advance(20_000):
             continue
         rows, frame = session.history, session.frame()
@@ -61,7 +61,7 @@ def test_an_avalanche_is_announced_and_its_grains_pointed_at() -> None:
             told += 1
             assert any(notice.startswith("avalanche") for notice in frame.notices)
             assert frame.highlight is not None
-            weight = taking_part(session.run.setup.packing, before, session.run._last)
+            weight = taking_part(session.run.setup.packing, before, session.run.last)
             assert np.array_equal(frame.highlight, weight > weight.mean())
             assert 1.0 / len(weight) <= participation(weight) <= 1.0
         else:
@@ -113,10 +113,10 @@ def test_auxetic_avalanches_are_more_local_and_change_forces_less() -> None:
             session = cell(kind, seed, grains=300, strain=0.35, tolerance=3e-3)
             session.submit(Protocol(True))
             while not session.idle:
-                before = session.run._last
+                before = session.run.last
                 if not session.advance(20_000) or session.frame().highlight is None:
                     continue
-                packing, now = session.run.setup.packing, session.run._last
+                packing, now = session.run.setup.packing, session.run.last
                 shares.append(participation(taking_part(packing, before, now)))
                 contacts = before.grain_contacts, now.grain_contacts
                 found = force_changes(*contacts, packing.label, packing.label)

@@ -31,7 +31,7 @@ def sheared(kind: str, **settings: object) -> np.ndarray:
         run = session.run
         box = run.setup.packing.box
         assert box is not None
-        stresses = plate_stresses(run.setup.world, box.width, run._last)
+        stresses = plate_stresses(run.setup.world, box.width, run.last)
         rows.append((session.history[-1].stroke, *stresses))
         while not session.advance(20_000):
             if session.idle:

@@ -79,7 +79,7 @@ def test_weight_rests_on_the_funnel(tilt: float) -> None:
     run = session.run
     weight = 0.01 * float(np.sum(run.setup.packing.rest_radius**2))
     angle = math.radians(tilt)
-    fx, fy, _ = run._last.reactions[0]
+    fx, fy, _ = run.last.reactions[0]
     assert fx == pytest.approx(weight * math.sin(angle), abs=0.02 * weight)
     assert fy == pytest.approx(-weight * math.cos(angle), abs=0.02 * weight)
 

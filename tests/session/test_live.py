@@ -8,6 +8,7 @@ import pytest
 from core.friction import Friction
 from core.quasistatic import Quasistatic
 from core.relaxation import StopReason
+from core.system import System
 from sandbox.session.commands import Change, Protocol, Reset
 from sandbox.session.session import Session
 from scenes import registry
@@ -37,7 +38,7 @@ def test_a_live_change_is_one_relaxation_of_the_grains_where_they_stand() -> Non
     assert session.idle
     assert len(session.history) == rows + 1
     assert np.array_equal(run.setup.world.placement(), placement)
-    by_hand = Quasistatic(twin, run.setup.world, run.setup.solver)
+    by_hand = Quasistatic(System(twin, run.setup.world, run.setup.solver))
     by_hand.begin({})
     assert by_hand.relax(1_000_000) is not None
     assert by_hand.packing.hash() == run.engine.packing.hash()
@@ -105,7 +106,7 @@ def test_friction_comes_and_goes() -> None:
     do(session, Change("friction", 0.0))
     go(session, 3)
     assert session.frame().spin is None
-    assert session.run.setup.friction == 0.0
+    assert session.run.setup.friction is None
 
 
 def test_reset_goes_to_the_start_with_the_present_settings() -> None:
@@ -189,7 +190,7 @@ def test_every_scene_has_live_parameters_and_applies_them() -> None:
             do(session, Change(p.name, new))
             assert session.settings[p.name] == new, (name, p.name)
         assert session.run is run
-        assert session.run.setup.solver == session.run.engine.settings
+        assert session.run.setup is session.run.engine.system
         go(session, 2)
         reason = session.history[-1].stop_reason
         assert reason not in (StopReason.NOT_FINITE, StopReason.COLLAPSED), name

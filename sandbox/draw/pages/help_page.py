@@ -23,7 +23,7 @@ class HelpLayout:
     """Where the groups stand: their column, and their top below that of the first [px]."""
 
     card: pygame.Rect
-    view: pygame.Rect  # what shows of the groups
+    opening: pygame.Rect  # what shows of the groups
     columns: int
     column: int  # width of a column [px]
     keys: int  # of which the keys take so much [px]
@@ -33,7 +33,7 @@ class HelpLayout:
     @property
     def most_scroll(self) -> int:
         """How far the groups can be scrolled [px]."""
-        return max(self.content - self.view.height, 0)
+        return max(self.content - self.opening.height, 0)
 
 
 def help_layout(size: tuple[int, int], type_: Type, groups: list[Group]) -> HelpLayout:
@@ -56,9 +56,9 @@ def help_layout(size: tuple[int, int], type_: Type, groups: list[Group]) -> Help
     height = min(head + content + 2 * pad, size[1])
     card = pygame.Rect(0, 0, width, height)
     card.center = (size[0] // 2, size[1] // 2)
-    view = pygame.Rect(card.left + pad, card.top + pad + head, width - 2 * pad, 0)
-    view.height = card.bottom - pad - view.top
-    return HelpLayout(card, view, columns, column, keys, places, content)
+    opening = pygame.Rect(card.left + pad, card.top + pad + head, width - 2 * pad, 0)
+    opening.height = card.bottom - pad - opening.top
+    return HelpLayout(card, opening, columns, column, keys, places, content)
 
 
 def _distributed(
@@ -106,12 +106,12 @@ def draw_help(painter: Painter, scroll: int = 0) -> HelpLayout:
     painter.box(
         places.card, theme.panel, radius=12.0 * scale, edge=theme.hairline, edge_width=1.5 * scale
     )
-    head = places.view.top - round(5 * scale) - type_.height(HEADING, bold=True) // 2
-    painter.text(words.HELP_TITLE, places.view.left, head, size=HEADING, bold=True)
-    step = (places.view.width - places.column) // max(places.columns - 1, 1)
+    head = places.opening.top - round(5 * scale) - type_.height(HEADING, bold=True) // 2
+    painter.text(words.HELP_TITLE, places.opening.left, head, size=HEADING, bold=True)
+    step = (places.opening.width - places.column) // max(places.columns - 1, 1)
     for (title, rows), (column, top) in zip(groups, places.places, strict=True):
-        x = places.view.left + column * step
-        _draw_group(painter, title, rows, (x, places.view.top + top - scroll), places)
+        x = places.opening.left + column * step
+        _draw_group(painter, title, rows, (x, places.opening.top + top - scroll), places)
     if places.most_scroll:
         _draw_scroll_bar(painter, places, scroll)
     painter.flush()
@@ -136,13 +136,13 @@ def _draw_group(
         texts.append((meaning, x + keys, y, line, BODY, False, theme.soft_text))
         y += line
     for text, left, top, height, size, bold, colour in texts:
-        if places.view.top <= top and top + height <= places.view.bottom + 1:
+        if places.opening.top <= top and top + height <= places.opening.bottom + 1:
             painter.text(text, left, top + height // 2, size=size, bold=bold, colour=colour)
 
 
 def _draw_scroll_bar(painter: Painter, places: HelpLayout, scroll: int) -> None:
-    view, width = places.view, max(round(4 * painter.scale), 3)
-    length = max(view.height * view.height // places.content, 3 * width)
-    top = view.top + (view.height - length) * scroll // places.most_scroll
+    opening, width = places.opening, max(round(4 * painter.scale), 3)
+    length = max(opening.height * opening.height // places.content, 3 * width)
+    top = opening.top + (opening.height - length) * scroll // places.most_scroll
     bar = pygame.Rect(places.card.right - 2 * width, top, width, length)
     painter.box(bar, painter.theme.soft_text, radius=0.5 * width)

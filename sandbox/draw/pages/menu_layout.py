@@ -62,7 +62,7 @@ class MenuLayout:
     """Places by name; those of ``scrolled`` are shifted up by the scroll."""
 
     title: pygame.Rect
-    view: pygame.Rect  # what shows of the part that scrolls
+    opening: pygame.Rect  # what shows of the part that scrolls
     foot: pygame.Rect
     chips: dict[str, pygame.Rect]
     scrolled: dict[str, pygame.Rect]
@@ -72,7 +72,7 @@ class MenuLayout:
     @property
     def most_scroll(self) -> int:
         """How far the cards can be scrolled [px]."""
-        return max(self.content - self.view.height, 0)
+        return max(self.content - self.opening.height, 0)
 
     @property
     def cards(self) -> list[pygame.Rect]:
@@ -95,7 +95,7 @@ class MenuLayout:
         for name, rect in self.chips.items():
             if rect.collidepoint(place):
                 return name
-        if not self.view.collidepoint(place):
+        if not self.opening.collidepoint(place):
             return ""
         x, y = place
         found = [name for name, rect in self.scrolled.items() if rect.collidepoint(x, y + scroll)]
@@ -105,8 +105,8 @@ class MenuLayout:
         """The scroll that brings something into view, changed as little as possible."""
         rect = self.scrolled.get(name)
         if rect is not None:
-            scroll = min(scroll, rect.top - self.view.top)
-            scroll = max(scroll, rect.bottom - self.view.bottom)
+            scroll = min(scroll, rect.top - self.opening.top)
+            scroll = max(scroll, rect.bottom - self.opening.bottom)
         return max(0, min(scroll, self.most_scroll))
 
     def neighbour(self, name: str, way: tuple[int, int]) -> str:
@@ -153,31 +153,31 @@ def menu_layout(size: tuple[int, int], type_: Type, contents: Contents) -> MenuL
     foot_height = 0 if small else type_.height(SMALL) + gap // 2
     foot = pygame.Rect(pad, height - foot_height - gap // 3, width - 2 * pad, foot_height)
     top = below + gap
-    view = pygame.Rect(pad, top, width - 2 * pad, max(foot.top - top - gap // 3, 1))
+    opening = pygame.Rect(pad, top, width - 2 * pad, max(foot.top - top - gap // 3, 1))
     scrolled: dict[str, pygame.Rect] = {}
-    y, strip = view.top, None
+    y, strip = opening.top, None
     if contents.resume:
         strip = pygame.Rect(
-            view.left, y, view.width, _strip_height(type_, contents.resume, view.width)
+            opening.left, y, opening.width, _strip_height(type_, contents.resume, opening.width)
         )
         scrolled.update(strip_buttons(strip, type_))
         y = strip.bottom + gap
-    columns = max(1, min(MOST_COLUMNS, (view.width + gap) // round(CARD * scale)))
-    card_width = (view.width - (columns - 1) * gap) // columns
+    columns = max(1, min(MOST_COLUMNS, (opening.width + gap) // round(CARD * scale)))
+    card_width = (opening.width - (columns - 1) * gap) // columns
     if contents.start:
-        tall = min(banner_height(type_, view.width), view.height)
-        scrolled[START] = pygame.Rect(view.left, y, view.width, tall)
+        tall = min(banner_height(type_, opening.width), opening.height)
+        scrolled[START] = pygame.Rect(opening.left, y, opening.width, tall)
         y = scrolled[START].bottom + gap
     tallest = max((card_height(type_, card, card_width) for card in contents.cards), default=0)
-    tallest = min(tallest, view.height)
+    tallest = min(tallest, opening.height)
     for index, card in enumerate(contents.cards):
-        left = view.left + (index % columns) * (card_width + gap)
+        left = opening.left + (index % columns) * (card_width + gap)
         place = pygame.Rect(left, y + (index // columns) * (tallest + gap), card_width, tallest)
         scrolled[card.name] = place
         if card.tour:
             scrolled[TOUR + card.name.removeprefix(SCENE)] = tour_button(place, type_)
-    bottom = max((rect.bottom for rect in scrolled.values()), default=view.top)
-    return MenuLayout(title, view, foot, chips, scrolled, strip, bottom - view.top)
+    bottom = max((rect.bottom for rect in scrolled.values()), default=opening.top)
+    return MenuLayout(title, opening, foot, chips, scrolled, strip, bottom - opening.top)
 
 
 def _chips(

@@ -59,7 +59,7 @@ def draw_menu(
         if card.tour:
             name = TOUR + card.name.removeprefix(SCENE)
             place = places.scrolled[name].move(0, -scroll)
-            _draw_button(painter, words.TOUR, place, places.view, on=name == chosen, small=True)
+            _draw_button(painter, words.TOUR, place, places.opening, on=name == chosen, small=True)
     if contents.start:
         _draw_banner(painter, places.scrolled[START].move(0, -scroll), places, chosen == START)
     if places.strip is not None:
@@ -98,9 +98,11 @@ def _draw_chip(painter: Painter, chip: Chip, rect: pygame.Rect, *, on: bool) -> 
     painter.text(text, *rect.center, anchor="centre", bold=chip.on)
 
 
-def _box(painter: Painter, rect: pygame.Rect, view: pygame.Rect, *, on: bool) -> pygame.Rect | None:
+def _box(
+    painter: Painter, rect: pygame.Rect, opening: pygame.Rect, *, on: bool
+) -> pygame.Rect | None:
     """The ground of a card as far as it shows; None if nothing of it does."""
-    seen = rect.clip(view)
+    seen = rect.clip(opening)
     if seen.height < min(rect.height // 4, painter.type.height(HEADING)):
         return None
     scale, theme = painter.scale, painter.theme
@@ -129,7 +131,7 @@ def _picture(painter: Painter, name: str, box: pygame.Rect, seen: pygame.Rect) -
 def _draw_card(
     painter: Painter, card: Card, rect: pygame.Rect, places: MenuLayout, *, on: bool
 ) -> None:
-    seen = _box(painter, rect, places.view, on=on)
+    seen = _box(painter, rect, places.opening, on=on)
     if seen is None:
         return
     type_, theme = painter.type, painter.theme
@@ -182,7 +184,7 @@ def _write(
 
 def _draw_banner(painter: Painter, rect: pygame.Rect, places: MenuLayout, on: bool) -> None:
     """Where to start: three hoppers side by side."""
-    seen = _box(painter, rect, places.view, on=on)
+    seen = _box(painter, rect, places.opening, on=on)
     if seen is None:
         return
     type_, theme = painter.type, painter.theme
@@ -212,7 +214,7 @@ def _draw_strip(painter: Painter, text: str, places: MenuLayout, chosen: str, sc
     """What was left unfinished, and what can be done about it."""
     assert places.strip is not None
     strip = places.strip.move(0, -scroll)
-    seen = _box(painter, strip, places.view, on=False)
+    seen = _box(painter, strip, places.opening, on=False)
     if seen is None:
         return
     type_, pad = painter.type, round(PAD * painter.scale)
@@ -220,7 +222,7 @@ def _draw_strip(painter: Painter, text: str, places: MenuLayout, chosen: str, sc
     for name, said in ((TAKE_UP, words.TAKE_UP), (DISCARD, words.DISCARD)):
         rect = places.scrolled[name].move(0, -scroll)
         left = min(left, rect.left)
-        _draw_button(painter, said, rect, places.view, on=name == chosen)
+        _draw_button(painter, said, rect, places.opening, on=name == chosen)
     buttons = places.scrolled[TAKE_UP].move(0, -scroll)
     room = left - strip.left - 2 * pad
     if type_.width(text, BODY) <= room and strip.height <= buttons.height + 2 * pad:
@@ -240,12 +242,12 @@ def _draw_button(
     painter: Painter,
     text: str,
     rect: pygame.Rect,
-    view: pygame.Rect,
+    opening: pygame.Rect,
     *,
     on: bool,
     small: bool = False,
 ) -> None:
-    if not view.contains(rect):
+    if not opening.contains(rect):
         return
     scale, theme = painter.scale, painter.theme
     painter.box(
@@ -261,9 +263,9 @@ def _draw_button(
 
 
 def _draw_scroll_bar(painter: Painter, places: MenuLayout, scroll: int) -> None:
-    view = places.view
+    opening = places.opening
     width = max(round(4 * painter.scale), 3)
-    length = max(view.height * view.height // places.content, 3 * width)
-    top = view.top + (view.height - length) * scroll // places.most_scroll
+    length = max(opening.height * opening.height // places.content, 3 * width)
+    top = opening.top + (opening.height - length) * scroll // places.most_scroll
     bar = pygame.Rect(painter.everything.right - 2 * width, top, width, length)
     painter.box(bar, painter.theme.soft_text, radius=0.5 * width)

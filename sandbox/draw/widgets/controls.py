@@ -190,13 +190,13 @@ class Places:
         """Names of what the keyboard can go to."""
         return tuple(place.control.name for place in self.all if can_be_used(place.control))
 
-    def scroll_to(self, name: str, scroll: int, view: int, room: int) -> int:
+    def scroll_to(self, name: str, scroll: int, opening: int, room: int) -> int:
         """The scroll that shows a control and ``room`` [px] around it, changed as little as possible."""
         place = self.named(name)
         if place is not None:
             scroll = min(scroll, place.rect.top - room)
-            scroll = max(scroll, place.rect.bottom + room - view)
-        return max(0, min(scroll, self.height - view))
+            scroll = max(scroll, place.rect.bottom + room - opening)
+        return max(0, min(scroll, self.height - opening))
 
 
 def can_be_used(control: Simple) -> bool:

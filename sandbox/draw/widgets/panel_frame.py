@@ -37,16 +37,16 @@ def panel_picture(
     seen = height - foot
     whole = pygame.Surface(size, 0, 32)
     whole.fill(channels(theme.panel))
-    view = pygame.Surface((width, max(seen, 1)), 0, 32)
-    view.fill(channels(theme.panel))
-    painter = Painter(view, theme, type_)
+    part = pygame.Surface((width, max(seen, 1)), 0, 32)
+    part.fill(channels(theme.panel))
+    painter = Painter(part, theme, type_)
     for place in places.all:
         moved = place.rect.move(0, -scroll)
         if moved.bottom > 0 and moved.top < seen:
             draw_control(painter, Place(place.control, moved), attention)
     _draw_scroll_bar(painter, places.height, scroll)
     painter.flush()
-    whole.blit(view, (0, 0))
+    whole.blit(part, (0, 0))
     painter = Painter(whole, theme, type_)
     painter.fill(pygame.Rect(0, 0, max(round(type_.scale), 1), height), theme.hairline)
     if foot:
@@ -74,13 +74,13 @@ def draw_tab(painter: Painter, rect: pygame.Rect) -> None:
 
 
 def _draw_scroll_bar(painter: Painter, content: int, scroll: int) -> None:
-    view = painter.everything
-    if content <= view.height:
+    whole = painter.everything
+    if content <= whole.height:
         return
     width = max(round(4 * painter.scale), 3)
-    length = max(view.height * view.height // content, 3 * width)
-    top = (view.height - length) * scroll // (content - view.height)
-    bar = pygame.Rect(view.width - width - 2, top, width, length)
+    length = max(whole.height * whole.height // content, 3 * width)
+    top = (whole.height - length) * scroll // (content - whole.height)
+    bar = pygame.Rect(whole.width - width - 2, top, width, length)
     painter.box(bar, painter.theme.soft_text, radius=0.5 * width)
 
 

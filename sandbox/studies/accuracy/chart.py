@@ -72,45 +72,42 @@ def chart_forces(chart, force, turned):
 
 @kernel
 def run(
-    m, box, rigid, friction, weight, limits, chart, velocity, turned, inverse_mass, control, most
+    m, box, rigid, friction, weight, limits, chart, velocity, turned, inverse_mass, record, most
 ):
     """``fire.run`` in the paper's chart, with all its rules. Returns (reason, evaluations)."""
-    bits = control.view(np.int64)
+    control = record[0]
     flat = chart.reshape(-1)
     speed = velocity.reshape(-1)
     push = turned.reshape(-1)
     light = inverse_mass.reshape(-1)
     for iteration in range(most):
-        dt = control[fire.DT]
-        if control[fire.PENDING] == 0.0:
-            sweeps.kick(speed, push, light, control[fire.KEEP], control[fire.PUSH])
-            bits[fire.FASTEST] = sweeps.largest(speed.view(np.int64))
-            fastest = control[fire.FASTEST]
+        dt = control.dt
+        if not control.pending:
+            sweeps.kick(speed, push, light, control.keep, control.push)
+            control.fastest_bits = sweeps.largest(speed.view(np.int64))
+            fastest = control.fastest
             step = dt if fastest * dt <= limits.clamp else limits.clamp / fastest
             sweeps.drift(flat, speed, step)
             to_smooth(chart, m.state)
             if not sweeps.farthest(m.state, m.reference) <= 0.5 * limits.skin:
-                control[fire.PENDING] = 1.0
+                control.pending = True
                 return STALE, iteration
-        control[fire.PENDING] = 0.0
-        control[fire.ENERGY] = fire.evaluate(m, box, rigid, friction, weight, None)
+        control.pending = False
+        control.energy = fire.evaluate(m, box, rigid, friction, weight, None)
         chart_forces(chart, m.force, turned)
         power, force_square, speed_square = sweeps.second_kick(speed, push, light, 0.5 * dt)
-        bits[fire.FASTEST] = sweeps.largest(push.view(np.int64))
-        largest_force = control[fire.FASTEST]
-        if not abs(power + force_square + speed_square + control[fire.ENERGY]) < np.inf:
+        control.fastest_bits = sweeps.largest(push.view(np.int64))
+        largest_force = control.fastest
+        if not abs(power + force_square + speed_square + control.energy) < np.inf:
             return fire.NOT_FINITE, iteration + 1
-        control[fire.COUNTDOWN] -= 1.0
-        if (
-            control[fire.COUNTDOWN] <= 0.0
-            or largest_force <= limits.tolerance * control[fire.SCALE]
-        ):
-            control[fire.COUNTDOWN] = fire.SCALE_EVERY
-            control[fire.SCALE] = max(fire.mean_contact_force(m, box, rigid), limits.force_floor)
-        if largest_force <= limits.tolerance * control[fire.SCALE]:
+        control.countdown -= 1
+        if control.countdown <= 0 or largest_force <= limits.tolerance * control.scale:
+            control.countdown = fire.SCALE_EVERY
+            control.scale = max(fire.mean_contact_force(m, box, rigid), limits.force_floor)
+        if largest_force <= limits.tolerance * control.scale:
             return fire.CONVERGED, iteration + 1
-        control[fire.DT], control[fire.ALPHA], control[fire.KEEP], control[fire.PUSH] = steer(
-            power, force_square, speed_square, dt, control[fire.ALPHA], limits.dt_max
+        control.dt, control.alpha, control.keep, control.push = steer(
+            power, force_square, speed_square, dt, control.alpha, limits.dt_max
         )
     return fire.BUDGET, most
 

@@ -54,8 +54,8 @@ def contact_job(scene: Scene, steps: int) -> dict[str, Any]:
 
 def _positions(scene: Scene, aspect: float, steps: int) -> tuple[Floats, Floats, Floats]:
     """States (M, 5, 2), directions (M,) and exact distances (M,) of ``steps`` positions: one grain turns, the other stands."""
-    values = scene.settings({"aspect": aspect})
-    packing = scene.build(values, "mixed", 1).packing
+    settings = scene.settings({"aspect": aspect})
+    packing = scene.build(settings, "mixed", 1).packing
     a, b = packing.semi_axes
     states, exact = [], []
     for tilt_angle in np.linspace(0.0, np.pi, steps, endpoint=False):
@@ -74,8 +74,8 @@ def _one(scene: Scene, aspect: float, steps: int) -> dict[str, float]:
 
 
 def _halvings(scene: Scene, steps: int) -> list[dict[str, float]]:
-    values = scene.settings()
-    states, angles, exact = _positions(scene, float(values["aspect"]), steps)
+    settings = scene.settings()
+    states, angles, exact = _positions(scene, float(settings["aspect"]), steps)
     found, times = np.empty(steps), max(1, TIMED // steps)
     rows = []
     for halvings in HALVINGS:

@@ -57,7 +57,7 @@ class Start:
     """A built scene, driven to where the protocol begins: what every walk sets out from."""
 
     scene: Scene
-    values: Mapping[str, Value]
+    settings: Mapping[str, Value]
     setup: Setup
     packing: Packing
     placement: Floats
@@ -127,15 +127,14 @@ def begin(
 ) -> Start:
     """Build a scene, drive it for ``lead`` of its increments, on until the handle feels ``least_force`` [k R], and relax it."""
     scene = registry.get(name)
-    values = scene.settings(overrides)
-    terms = scene.ingredients(values)
+    settings = scene.settings(overrides)
+    terms = scene.ingredients(settings)
     compile_kernels(
         periodic=terms.periodic, rigid=terms.rigid, friction=terms.friction, gravity=terms.gravity
     )
-    setup = scene.build(values, packing, seed)
-    count = len(setup.packing)
-    friction = Friction(setup.friction, count) if setup.friction > 0.0 else None
-    start = Start(scene, values, setup, setup.packing, setup.world.placement(), friction, 0)
+    setup = scene.build(settings, packing, seed)
+    placement = setup.world.placement()
+    start = Start(scene, settings, setup, setup.packing, placement, setup.friction, 0)
     walker = Walker(start, Knobs(tolerance=LEAD_TOLERANCE, max_iterations=LEAD_ITERATIONS))
     done = 0
     while done < MOST_LEAD * lead:
@@ -146,11 +145,17 @@ def begin(
         if done >= lead and np.hypot(*look.force) >= least_force:
             break
     if setup.drag == 0.0 and setup.relaxes:
-        for _ in range(1 if friction is None else RESTS):
+        for _ in range(1 if setup.friction is None else RESTS):
             walker.rest(TIGHT)
     engine = walker.engine
     return Start(
-        scene, values, setup, engine.packing.copy(), setup.world.placement(), engine.friction, done
+        scene,
+        settings,
+        setup,
+        engine.packing.copy(),
+        setup.world.placement(),
+        engine.friction,
+        done,
     )
 
 
@@ -159,9 +164,9 @@ class Walker:
 
     def __init__(self, start: Start, knobs: Knobs) -> None:
         self.start, self.knobs = start, knobs
-        self.values = dict(start.values)
-        if "step" in self.values:
-            self.values["step"] = float(self.values["step"]) * knobs.step
+        self.settings = dict(start.settings)
+        if "step" in self.settings:
+            self.settings["step"] = float(self.settings["step"]) * knobs.step
         packing = start.packing.copy()
         if knobs.contact_stiffness is not None:
             packing.contact_stiffness[:] = knobs.contact_stiffness
@@ -172,6 +177,7 @@ class Walker:
         self.setup = replace(
             start.setup,
             packing=packing,
+            friction=None if start.friction is None else start.friction.copy(),
             solver=replace(
                 solver,
                 step=solver.step * share,
@@ -180,37 +186,28 @@ class Walker:
             ),
             drag=start.setup.drag / knobs.step,
         )
-        self.engine = Quasistatic(
-            packing,
-            self.setup.world,
-            self.setup.solver,
-            None if start.friction is None else start.friction.copy(),
-            self.setup.gravity,
-            follow=self.setup.follow,
-            drag=self.setup.drag,
-            relaxes=self.setup.relaxes,
-        )
+        self.engine = Quasistatic(self.setup)
         self._next = round(start.lead / knobs.step)
         if knobs.contact_stiffness is not None:
             self.rest()
 
     def rest(self, tolerance: float | None = None) -> Look:
         """Relax where things stand, to ``tolerance``, or that of the knobs."""
-        settings = self.engine.settings
-        self.engine.settings = replace(
-            settings,
+        usual = self.setup.solver
+        self.setup.solver = replace(
+            usual,
             tolerance=self.knobs.tolerance if tolerance is None else tolerance,
             max_iterations=MOST_ITERATIONS,
         )
         done, iterations, solving = self._relaxed({}, None)
-        self.engine.settings = settings
+        self.setup.solver = usual
         return replace(self.look(done), iterations=iterations, solving=solving)
 
     def increment(self) -> Look | None:
         """The next increment of the protocol; None at its end."""
         targets: dict[str, Point] | None = {}
         if self.setup.drag == 0.0:  # else the grains go on by themselves
-            targets = self.start.scene.drive(self.setup, self.values, self._next)
+            targets = self.start.scene.drive(self.setup, self.settings, self._next)
         if targets is None:
             return None
         self._next += 1
@@ -251,17 +248,16 @@ class Walker:
 
     def _let_go(self, done: Increment) -> Increment:
         """Take out the grains that have left; the increment without them."""
-        gone = None if self.setup.outlet is None else self.setup.outlet.gone(self.engine.packing)
+        gone = None if self.setup.outlet is None else self.setup.outlet.gone(self.setup.packing)
         if gone is not None and gone.any():
             self.engine.remove(gone)
             pairs, bodies = self.engine.contacts()
             done = replace(done, grain_contacts=pairs, body_contacts=bodies)
-        self.setup.packing = self.engine.packing
         return done
 
     def look(self, done: Increment) -> Look:
         """What users read after that increment; its cost is left open."""
-        packing, setup = self.engine.packing, self.setup
+        packing, setup = self.setup.packing, self.setup
         pairs, bodies = done.grain_contacts, done.body_contacts
         report = done.report
         drive = setup.handles[0].body

@@ -22,7 +22,7 @@ def example(grains: int, packing: str = "mixed", increments: int = 5) -> Frame:
     session = Session("intruder", packing, 1, {"grains": grains})
     session.build()
     session.submit(Protocol(True))
-    for _ in islice(filter(None, session.slices(400)), increments):
+    for _ in islice(session.increments(400), increments):
         pass
     return session.frame()
 

@@ -15,6 +15,7 @@ from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
+from core.system import System
 from sandbox.studies.bench.report import Row, Section, at_most
 from sandbox.studies.common.clock import clock, exponent
 
@@ -74,7 +75,7 @@ def iteration_time(packing: Packing, seconds: float) -> float:
 def increment(packing: Packing, seconds: float) -> dict[str, Any]:
     """Squeeze the periodic box by one step from both sides; iterations until it is relaxed, within about ``seconds``."""
     settings = Settings()
-    engine = Quasistatic(packing, RigidWorld(), settings)
+    engine = Quasistatic(System(packing, RigidWorld(), settings))
     box = packing.box
     assert box is not None
     goal = PeriodicBox(box.width - settings.step, box.height - settings.step)
@@ -107,7 +108,7 @@ def memory(count: int, seed: Packing) -> dict[str, float]:
     arrays += _bytes([relaxation._rigid])
 
     def work() -> None:
-        engine = Quasistatic(packing.copy(), world, Settings(max_iterations=20))
+        engine = Quasistatic(System(packing.copy(), world, Settings(max_iterations=20)))
         for _ in range(2):
             engine.begin({})
             engine.relax(20)

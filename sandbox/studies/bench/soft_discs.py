@@ -135,8 +135,8 @@ def relax(discs: SoftDiscs) -> Relaxed:
         largest = float(np.abs(m.force[:2]).max())
     return Relaxed(
         "this program",
-        float(m.control[fire.START_ENERGY]) / len(discs.x),
-        float(m.control[fire.ENERGY]) / len(discs.x),
+        float(m.control["start_energy"][0]) / len(discs.x),
+        float(m.control["energy"][0]) / len(discs.x),
         largest,
         iterations,
         iterations,

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -75,11 +76,7 @@ def push(job: Job, check: Callable[[], None]) -> Row:
     session = Session(job.scene, job.packing, job.seed, job.settings())
     session.build()
     session.submit(Protocol(True))
-    forces = []
-    while not session.idle:
-        check()
-        if session.advance(SLICE):
-            forces.append(session.run.hand_force)
+    forces = [session.run.hand_force for _ in session.increments(SLICE, check)]
     reasons = session.history.column("stop_reason")
     way = session.run.way
     pushing = np.array([force for force in forces if math.isfinite(force)])
@@ -112,11 +109,8 @@ def wild(job: Job, check: Callable[[], None]) -> Row:
             x, y = FAR * math.cos(angle), FAR * math.sin(angle)
         session.submit(Grab(handle))
         session.submit(Move(handle, float(x), float(y)))
-        for _ in range(length):
-            while not session.advance(SLICE) and not session.idle:
-                check()
-            if session.idle:
-                break
+        for _ in islice(session.increments(SLICE, check), length):
+            pass
         if rng.random() < 0.5:
             session.submit(Release(handle))
         endings.append(_ending(session))

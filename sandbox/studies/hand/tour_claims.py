@@ -370,10 +370,8 @@ def _pull(panes: Panes, handle: str, target: tuple[float, float]) -> None:
 
 def _one_increment(pane: Pane, check: Callable[[], None]) -> None:
     session = pane.session
-    while not session.advance(SLICE):
-        check()
-        if session.idle:
-            return
+    if not any(session.slices(SLICE, check)):
+        return
     latest = session.run.engine.latest
     assert latest is not None
     if session.scene.name == "couette":

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass, field
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -107,12 +108,7 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
     session.submit(Protocol(True))
     probe = PROBES[request.probe]()
     rows = [probe.look(session)]
-    for finished in session.slices(SLICE):
-        check()
-        if finished:
-            rows.append(probe.look(session))
-            if len(rows) > steps:
-                break
+    rows.extend(probe.look(session) for _ in islice(session.increments(SLICE, check), steps))
     reasons = session.history.column("stop_reason")[1:]
     ended = None
     if len(reasons) and str(reasons[-1]) in BROKEN:

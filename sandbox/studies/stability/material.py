@@ -110,7 +110,7 @@ def there_and_back(watch: Watch, rig: Rig) -> None:
     assert box is not None
     packing = rig.packing
     finest_of_all = np.max(finest(packing.poisson_ratio, packing.contact_stiffness))
-    rig.engine.settings = rigs.settings(tolerance=float(finest_of_all))
+    rig.engine.system.solver = rigs.settings(tolerance=float(finest_of_all))
     same = watch.step(rig.engine).report.reason is StopReason.CONVERGED
     start, touching = rig.packing.state.copy(), _touching(rig)
     near = PeriodicBox(box.width * (1.0 - 1e-5), box.height * (1.0 - 1e-5), box.shift)

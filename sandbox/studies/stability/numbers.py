@@ -25,6 +25,12 @@ NONSENSE = (math.nan, math.inf, -math.inf)
 
 def cases() -> Iterator[Case]:
     """All of this module."""
+    yield from _of_lengths()
+    yield from _of_material()
+    yield from _of_requests()
+
+
+def _of_lengths() -> Iterator[Case]:
     for unit, kind in itertools.product(UNITS, rigs.KINDS):
         yield Case(
             "units",
@@ -48,6 +54,9 @@ def cases() -> Iterator[Case]:
             (REFUSED,),
             (),
         )
+
+
+def _of_material() -> Iterator[Case]:
     for nu, stiffness in itertools.product(
         (0.8, -0.8, 1.0 - 1e-12, -1.0 + 1e-12), (2.0 + 1e-9, 2.001, 1e8, 1e12)
     ):
@@ -68,6 +77,9 @@ def cases() -> Iterator[Case]:
             allowed=(SOLVED, REFUSED),
             named=(StopReason.ITERATION_LIMIT, StopReason.NOT_FINITE, StopReason.COLLAPSED),
         )
+
+
+def _of_requests() -> Iterator[Case]:
     for value in (*NONSENSE, 1e300, -1e300, DENORMAL):
         yield Case(
             "a hand that asks for nonsense",

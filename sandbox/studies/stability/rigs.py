@@ -16,6 +16,7 @@ from core.quasistatic import Quasistatic
 from core.relaxation import FAILED
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from core.settings import Settings
+from core.system import System
 from sandbox.studies.stability.watch import Watch
 
 WALL = 1.6  # thickness of the walls [R]
@@ -90,9 +91,9 @@ def engine(
     drag: float = 0.0,
 ) -> Quasistatic:
     """An engine with the terms that are not 0."""
-    rubbing = Friction(friction, len(packing)) if friction > 0.0 else None
+    rubbing = Friction.of(friction, len(packing))
     world = RigidWorld() if world is None else world
-    return Quasistatic(packing, world, solver or settings(), rubbing, gravity or None, drag=drag)
+    return Quasistatic(System(packing, world, solver or settings(), rubbing, gravity, drag))
 
 
 def cell(

@@ -13,6 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,22 +108,18 @@ class Watch:
 
     def run(self, session: Session, increments: int) -> int:
         """Advance a session until so many increments are finished or nothing is left to do; how many there were."""
-        done = 0
-        while done < increments and not session.idle:
-            self.check_time()
-            out = session.history[-1].grains_out
-            if not session.advance(SLICE):
-                continue
+        done, out = 0, session.history[-1].grains_out
+        for row in islice(session.increments(SLICE, self.check_time), increments):
             done += 1
             engine, latest = session.run.engine, session.run.engine.latest
             assert latest is not None
             self._count(latest)
-            left = session.history[-1].grains_out > out
             setup = session.run.setup
             if setup.outlet is None:
                 self._look(engine, latest, setup.outline)
-            elif not left:
+            elif row.grains_out == out:
                 self._look(engine, latest, None)
+            out = row.grains_out
         return done
 
     def expect(self, name: str, value: float, allowed: float) -> None:
@@ -211,13 +208,17 @@ def reported(increment: Increment) -> list[Look]:
 def balance(engine: Quasistatic, increment: Increment) -> list[Look]:
     """Newton's third law and the symmetry of the stress, to within what the reported residual leaves open."""
     report = increment.report
-    if report.reason is not StopReason.CONVERGED or engine.drag > 0.0 or report.residual == 0.0:
+    if (
+        report.reason is not StopReason.CONVERGED
+        or engine.system.drag > 0.0
+        or report.residual == 0.0
+    ):
         return []
     packing, count = engine.packing, len(engine.packing)
     largest = report.residual * report.mean_contact_force
     pairs, bodies = increment.grain_contacts, increment.body_contacts
     areas = packing.rest_radius**2
-    gravity = engine.gravity or (0.0, 0.0)
+    gravity = engine.system.gravity or (0.0, 0.0)
     magnitude = float(np.abs([*pairs.fx, *pairs.fy, *bodies.fx, *bodies.fy]).sum())
     magnitude += float(areas.sum()) * math.hypot(*gravity)
     allowed = count * largest * (1.0 + ROUNDING) + ROUNDING * magnitude

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.errors import InputError
 from sandbox.files.autosave import Autosave, Leftover
@@ -29,6 +29,16 @@ LONG = 20.0  # the same, when a log is to be written: it ends with a finished in
 MOST_MISSED = 1500  # increments that a packing that joins repeats; after more all begin anew
 
 
+@dataclass(frozen=True)
+class Wanted:
+    """A scene as it was asked for; its solvers may not have got there yet."""
+
+    scene: str
+    packing: str  # of the pane that was there first
+    seed: int
+    settings: Mapping[str, object]
+
+
 @dataclass
 class Pane:
     """One packing: its session and the thread that runs it."""
@@ -49,16 +59,13 @@ class Panes:
         autosave: Autosave | None = None,
     ) -> None:
         self.autosave = autosave
-        self.packing = packing
-        self.seed = seed
-        self.scene = ""
+        self.packing = packing  # chosen in the menu, for the next scene
         self.curves = Curves()
         self._make = make
-        self._settings: dict[str, object] = {}
-        self._built_with: dict[str, object] = {}  # settings when the scene was last built or reset
-        self._first = packing  # of the pane that was there first
-        self._straight = True  # has nobody gone back in time since the scene was last built?
-        self._gone_back = 0  # serial of the snapshot when somebody did
+        self._wanted = Wanted("", packing, seed, {})
+        self._start = self._wanted  # the same when the scene was last built or reset
+        # Serial of the snapshot when somebody has gone back in time; None: nobody has since the scene was last built.
+        self._gone_back: int | None = None
         self._panes: list[Pane] = []
         self._conductor = Conductor()
         self._speed = math.inf
@@ -66,6 +73,16 @@ class Panes:
         self._paused_by_menu = False
 
     # What is there.
+
+    @property
+    def scene(self) -> str:
+        """Its name; nothing before the first."""
+        return self._wanted.scene
+
+    @property
+    def seed(self) -> int:
+        """Of the random packing."""
+        return self._wanted.seed
 
     @property
     def snapshots(self) -> tuple[Snapshot, ...]:
@@ -102,7 +119,7 @@ class Panes:
     def _main(self) -> Pane | None:
         if not self.comparing:
             return self._panes[0] if self._panes else None
-        return next((p for p in self._panes if p.packing == self._first), self._panes[0])
+        return next((p for p in self._panes if p.packing == self._wanted.packing), self._panes[0])
 
     # Beginning and ending.
 
@@ -116,14 +133,16 @@ class Panes:
         given = dict(settings or {})
         kinds = tuple(packings) or (self.packing,)
         sessions = [self._make(scene, kind, self.seed, dict(given)) for kind in kinds]
-        self._begin(scene, given, kinds, sessions)
+        first = self.packing if self.packing in kinds else kinds[0]
+        self._begin(Wanted(scene, first, self.seed, given), kinds, sessions)
 
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
         """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""
         kept = file if isinstance(file, SceneFile) else read_scene(file)
         session = Session.from_file(kept)
-        self.packing, self.seed = kept.packing, kept.seed
-        self._begin(kept.scene, dict(kept.settings), (kept.packing,), [session])
+        self.packing = kept.packing
+        wanted = Wanted(kept.scene, kept.packing, kept.seed, kept.settings)
+        self._begin(wanted, (kept.packing,), [session])
 
     def take_up(self, leftover: Leftover) -> None:
         """Go on where a program that is gone had to stop. Its autosave is taken away as soon as there is another."""
@@ -141,19 +160,12 @@ class Panes:
         except OSError as error:
             raise InputError(f"{os.fspath(path)}: {error.strerror or error}") from error
 
-    def _begin(
-        self,
-        scene: str,
-        given: dict[str, object],
-        kinds: tuple[str, ...],
-        sessions: Sequence[Session],
-    ) -> None:
+    def _begin(self, wanted: Wanted, kinds: Sequence[str], sessions: Sequence[Session]) -> None:
         """Leave what runs, and begin with these."""
         self._keep_curves()
         self._leave(self._panes)
-        self.scene, self._settings, self._built_with = scene, given, dict(given)
-        self._first = self.packing if self.packing in kinds else kinds[0]
-        self._straight = True
+        self._wanted = self._start = wanted
+        self._gone_back = None
         self._paused_by_menu = False
         self._conductor = Conductor(begins_anew=self._begins_anew)
         self._conductor.set_speed(self._speed)
@@ -172,9 +184,10 @@ class Panes:
             return words.COMPARE_NOTHING
         repeat = self._can_be_repeated(frame)
         if not repeat:
-            self.seed, self._settings = frame.seed, dict(frame.settings)
-            self._built_with = dict(self._settings)
-        self.packing = self._first = frame.packing
+            self._start = self._wanted = replace(
+                self._wanted, seed=frame.seed, settings=frame.settings
+            )
+        self._of_kind(frame.packing)
         others = [kind for kind in kinds if kind != frame.packing]
         try:
             made = [self._another(kind) for kind in others]
@@ -192,7 +205,8 @@ class Panes:
         main = self.snapshot.made
         if main is not None and main.file is not None:
             return Session.from_file(main.file.of_kind(kind))
-        return self._make(self.scene, kind, self.seed, dict(self._built_with))
+        start = self._start
+        return self._make(start.scene, kind, start.seed, dict(start.settings))
 
     def cancel(self) -> bool:
         """Break off what is being built; True if a run is left to go on with.
@@ -211,7 +225,7 @@ class Panes:
                 self._leave(self._panes)
                 self._panes = []
             else:
-                self._straight, self._gone_back = False, first.serial
+                self._gone_back = first.serial
                 self._follow(first.frame)
         return self.exists
 
@@ -248,8 +262,7 @@ class Panes:
             command = self._back(command)
         if self._begins_anew(command):
             self._keep_curves()
-            self._built_with = dict(self._settings)
-            self._straight = True
+            self._start, self._gone_back = self._wanted, None
         self._conductor.submit(command)
 
     def reset(self) -> None:
@@ -260,7 +273,8 @@ class Panes:
         elif made is not None and made.file is not None:
             self.open(made.file)
         else:
-            self.start(self.scene, self._settings, self.packings if self.comparing else ())
+            packings = self.packings if self.comparing else ()
+            self.start(self.scene, self._wanted.settings, packings)
 
     def pause_or_go_on(self) -> None:
         """Hold, or go on."""
@@ -284,7 +298,7 @@ class Panes:
     def go_on(self) -> None:
         """The menu was closed: as it was before."""
         if self._panes:
-            self.packing = self._first  # whatever was looked at in the menu
+            self.packing = self._wanted.packing  # whatever was looked at in the menu
         if self._paused_by_menu:
             self._conductor.pause(False)
         self._paused_by_menu = False
@@ -294,7 +308,8 @@ class Panes:
         seen = self.snapshot
         if self.autosave is not None:
             self.autosave.keep(seen.made)
-        if not self._straight and seen.serial > self._gone_back and seen.phase == "running":
+        gone_back = self._gone_back
+        if gone_back is not None and seen.serial > gone_back and seen.phase == "running":
             self._follow(seen.frame)
 
     def close(self, log: str | os.PathLike[str] | None, clean: bool = True) -> bool:
@@ -322,20 +337,24 @@ class Panes:
 
     def _note_change(self, change: Change) -> None:
         if change.name == "seed" and isinstance(change.value, int):
-            self.seed = change.value
+            self._wanted = replace(self._wanted, seed=change.value)
         elif change.name == "packing":
-            self.packing = self._first = str(change.value)
-            self._panes[0].packing = self._first
+            self._of_kind(str(change.value))
         elif change.name != "scene":
-            wanted = {**self._settings, change.name: change.value}
+            settings = {**self._wanted.settings, change.name: change.value}
             if self.scene in registry.names():
-                registry.get(self.scene).settings(wanted)
-            self._settings = wanted
+                registry.get(self.scene).settings(settings)
+            self._wanted = replace(self._wanted, settings=settings)
+
+    def _of_kind(self, packing: str) -> None:
+        """The first pane has that packing, and so has the next scene."""
+        self.packing = self._panes[0].packing = packing
+        self._wanted = replace(self._wanted, packing=packing)
 
     def _back(self, command: Undo | Redo | Recall) -> Command:
         """A way back that all packings can go. Raises InputError if there is none."""
         way = way_back(command, [seen.frame for seen in self.snapshots if seen.frame is not None])
-        self._straight, self._gone_back = False, self.snapshot.serial
+        self._gone_back = self.snapshot.serial
         return way
 
     def _begins_anew(self, command: Command) -> bool:
@@ -343,15 +362,14 @@ class Panes:
 
     def _can_be_repeated(self, frame: Frame) -> bool:
         """Can another packing be brought to where this one is, by the same commands?"""
-        settings = registry.get(self.scene).settings(self._settings)
+        settings = registry.get(self.scene).settings(self._wanted.settings)
         same = frame.seed == self.seed and dict(frame.settings) in ({}, settings)
-        return same and self._straight and self._conductor.turns <= MOST_MISSED
+        return same and self._gone_back is None and self._conductor.turns <= MOST_MISSED
 
     def _follow(self, frame: Frame | None) -> None:
         """What the solver has is what there is."""
         if frame is None:
             return
         if not self.comparing:
-            self.packing = self._first = self._panes[0].packing = frame.packing
-        self.seed = frame.seed
-        self._settings = dict(frame.settings)
+            self._of_kind(frame.packing)
+        self._wanted = replace(self._wanted, seed=frame.seed, settings=frame.settings)

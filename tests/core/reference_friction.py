@@ -1,7 +1,4 @@
-"""Slow, plain twins of friction and gravity, from equations (10) and (11) of MODEL.md.
-
-For tests: the program never imports this.
-"""
+"""Slow, plain twins of friction and gravity, from equations (10) and (11) of MODEL.md."""
 
 from __future__ import annotations
 
