@@ -19,6 +19,7 @@ from scenes.registry import register
 from scenes.scene import (
     MATERIAL,
     SOLVER,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -61,7 +62,7 @@ class Avalanches(Scene):
         Parameter("grains", 400, "", 60, 4000, "number of grains, exactly"),
         Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
         Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive", live=True),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         # The shear stress is a small difference of large contact forces: at 1e-2 it is off by some per cent, and avalanches
         # come at the wrong strains. At 1e-3 one packing of four still took another way at once; 1e-4 costs 1.7 times as

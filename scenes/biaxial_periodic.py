@@ -14,6 +14,7 @@ from scenes.registry import register
 from scenes.scene import (
     MATERIAL,
     SOLVER,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -59,7 +60,7 @@ class BiaxialPeriodic(Scene):
             "volumetric strain −ε_v of the scripted squeeze",
             live=True,
         ),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         *SOLVER,
     )

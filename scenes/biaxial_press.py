@@ -21,6 +21,7 @@ from scenes.scene import (
     FRICTION,
     MATERIAL,
     SOLVER,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -64,7 +65,7 @@ class BiaxialPress(Scene):
             "compression", 0.2, "", 0.01, 0.5, "largest loss of area, as a share of it", live=True
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         *SOLVER,
     )

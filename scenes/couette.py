@@ -17,6 +17,7 @@ from scenes.scene import (
     FRICTION,
     MATERIAL,
     SOLVER,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -88,7 +89,7 @@ class Couette(Scene):
         Parameter("strain", 1.0, "", 0.01, 20.0, "shear strain of the steady shear", live=True),
         Parameter("cycles", 2, "", 1, 50, "number of cycles", live=True),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         *SOLVER,
     )

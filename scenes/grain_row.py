@@ -20,6 +20,7 @@ from scenes.registry import register
 from scenes.scene import (
     FRICTION,
     MATERIAL,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -67,7 +68,7 @@ class GrainRow(Scene):
             live=True,
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         Parameter(
             "step", 0.005, "R", 1e-4, 0.05, "longest move of the piston in one increment", live=True

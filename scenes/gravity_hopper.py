@@ -25,6 +25,7 @@ from scenes.scene import (
     FRICTION,
     MATERIAL,
     SOLVER,
+    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -99,7 +100,7 @@ class GravityHopper(Scene):
         Parameter("shake", 0.8, "R", 0.0, SHAKE, "amplitude of the scripted shaking", live=True),
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
-        hand(1000.0),
+        hand(STRONGEST),
         *MATERIAL,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),

@@ -315,6 +315,7 @@ MATERIAL = (
 )
 HAND_STRENGTH = "hand_strength"
 STRONGEST = 1000.0  # [k R] stands for a testing machine
+BY_MACHINE = (HAND_STRENGTH, STRONGEST)  # what a protocol sets that is driven wherever it wants
 
 
 def hand(default: float) -> Parameter:
@@ -405,8 +406,8 @@ def _grains_kept(setup: Setup, region: list[Point], track: Track) -> Check:
     out = int(track.grains_out[-1]) if len(track.grains_out) else 0
     counted = len(packing) + out == track.initial_grains
     astray = ~inside(region, *packing.folded())
-    if setup.outlet is not None:  # on their way out, and not yet where they count
-        astray &= ~setup.outlet.has_come_out(packing)
+    if setup.outlet is not None:  # on their way out, or out and counted after the next increment
+        astray &= ~(setup.outlet.has_come_out(packing) | setup.outlet.gone(packing))
     stray = int(astray.sum())
     return Check(
         "no grain is lost and none has passed a wall",

@@ -21,6 +21,7 @@ from core.settings import LONGEST_STEP, Settings
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
+    STRONGEST,
     Check,
     Handle,
     Latest,
@@ -83,7 +84,7 @@ class SingleGrain(Scene):
             "largest approach of the plates, in diameters",
             live=True,
         ),
-        hand(1000.0),
+        hand(STRONGEST),
         Parameter(
             "step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment", live=True
         ),

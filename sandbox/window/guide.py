@@ -46,6 +46,7 @@ class Guide(Silent):
         self.scene = ""
         self.index = 0
         self.done = False
+        self.told = False  # explained before it is done, as somebody wished
         self._steps: tuple[Step, ...] = ()
         self._then: Moment | None = None  # what there was when the step began
         self._hover = ""
@@ -86,8 +87,8 @@ class Guide(Silent):
     def next(self) -> None:
         """The explanation, if it is not shown yet; else the next step; after the last the end."""
         page = self.page
-        if page.do and not self.done and words.tour_text(self.scene, self.step.key, "why"):
-            self.done = True
+        if page.do and not page.why and words.tour_text(self.scene, self.step.key, "why"):
+            self.told = True
         elif self.index + 1 < len(self._steps):
             self._go(self.index + 1)
         else:
@@ -101,7 +102,7 @@ class Guide(Silent):
             self._go(self.index - 1)
 
     def _go(self, index: int) -> None:
-        self.index, self.done, self._then = index, False, None
+        self.index, self.done, self.told, self._then = index, False, False, None
         step = self.step
         if step.packings:
             try:
@@ -216,7 +217,10 @@ class Guide(Silent):
         scene, key = self.scene, self.step.key
         do = words.tour_text(scene, key, "do")
         why = words.tour_text(scene, key, "why")
-        waiting = bool(do and why and not self.done)
+        waiting = bool(do and why and not self.done and not self.told)
+        if not self.done:
+            # What has not happened yet is not said as if it had.
+            why = words.TOUR_AHEAD.format(why=why) if self.told else ""
         last = self.index + 1 == len(self._steps)
         onward = words.TOUR_WHY if waiting else words.TOUR_END if last else words.TOUR_NEXT
         return TourPage(
@@ -226,7 +230,7 @@ class Guide(Silent):
             say=words.tour_text(scene, key, "say"),
             do=do,
             done=self.done,
-            why=why if self.done else "",
+            why=why,
             onward=onward,
         )
 

@@ -57,6 +57,16 @@ def test_a_push_tells_how_it_ended() -> None:
     assert free["failing"] == []
 
 
+def test_a_weaker_hand_that_was_never_needed_comes_to_the_same() -> None:
+    strong, weak = (Job("push", "grain_row", "auxetic", 1, strength) for strength in (50.0, 20.0))
+    row = carry_out(strong)
+    assert row["peak_force"] < 20.0
+    assert study.implied(weak, [row]) == carry_out(weak)
+    too_weak = Job("push", "grain_row", "auxetic", 1, 0.5 * row["peak_force"])
+    assert study.implied(too_weak, [row]) is None
+    assert study.implied(strong, [carry_out(weak)]) is None
+
+
 def test_a_random_hand_is_the_same_again() -> None:
     job = Job("random", "biaxial_press", "mixed", 3)
     first, second = carry_out(job), carry_out(job)

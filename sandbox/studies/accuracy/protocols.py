@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from scenes.parameter import Value
-from scenes.scene import HAND_STRENGTH, STRONGEST
+from scenes.scene import BY_MACHINE
 
 # Largest distance of the force-bearing grains of two tight walks (root of the mean square) that counts as the same path [R].
 APART = 0.03
@@ -25,9 +25,6 @@ class Protocol:
     settings: tuple[tuple[str, Value], ...] = ()
 
 
-MACHINE = ((HAND_STRENGTH, STRONGEST),)  # a hand of limited strength would not go the same way
-
-
 PROTOCOLS: dict[str, Protocol] = {
     "single_grain": Protocol(lead=10, length=8, starts=1),
     "two_ellipses": Protocol(lead=0, length=72, starts=1),
@@ -36,8 +33,10 @@ PROTOCOLS: dict[str, Protocol] = {
     "biaxial_periodic": Protocol(lead=8, length=4, starts=3, beyond=30),
     "couette": Protocol(lead=20, length=4, starts=3, beyond=30),
     "avalanches": Protocol(lead=40, length=8, starts=4, beyond=60),
-    "intruder": Protocol(lead=20, length=4, starts=4, beyond=40, settings=MACHINE),
-    "hopper": Protocol(lead=100, length=4, starts=3, beyond=30, least_force=0.1, settings=MACHINE),
+    "intruder": Protocol(lead=20, length=4, starts=4, beyond=40, settings=(BY_MACHINE,)),
+    "hopper": Protocol(
+        lead=100, length=4, starts=3, beyond=30, least_force=0.1, settings=(BY_MACHINE,)
+    ),
     "gravity_hopper": Protocol(lead=20, length=4, starts=3, beyond=30),
 }
 

@@ -123,7 +123,7 @@ def _strengths(rows: Sequence[Row]) -> list[str]:
         "| scene | strength | packing | locked | way | out | peak force | increments that did not converge |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",
     ]
-    for scene, strength in dict.fromkeys((row["scene"], row["strength"]) for row in rows):
+    for scene, strength in sorted({(row["scene"], row["strength"]) for row in rows}):
         for kind in KINDS:
             some = [
                 r

@@ -157,11 +157,6 @@ def _normal_stress(pane: Pane) -> float:
     return plate_stresses(run.setup.world, box.width, latest)[1]
 
 
-def _mean_drop(pane: Pane) -> float:
-    drops = observables.force_drops(pane.plotted)
-    return float(drops.mean()) if len(drops) else 0.0
-
-
 MIXED, REGULAR, AUXETIC = "mixed", "regular", "auxetic"
 # What is said at each step, and the condition that makes it true; a step that is missing says nothing about an outcome.
 CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
@@ -255,9 +250,6 @@ CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
     ("avalanches", "chains"): {
         "the next one, too": lambda p: "avalanche" in p[MIXED].events,
     },
-    ("avalanches", "compare"): {
-        "auxetic packings tend to have smaller falls": lambda p: _falling(p, _mean_drop),
-    },
     ("intruder", "drag"): {
         "locked among the regular grains, and there alone": _only_regular_is_locked,
     },
@@ -286,7 +278,7 @@ CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
     ("hopper", "chains"): {
         "thick chains in the locked hopper, thinner ones elsewhere": lambda p: (
             p[REGULAR].mean_contact_force
-            > 2.0 * max(p[MIXED].mean_contact_force, p[AUXETIC].mean_contact_force)
+            > 1.2 * max(p[MIXED].mean_contact_force, p[AUXETIC].mean_contact_force)
         ),
     },
     ("hopper", "machine"): {
@@ -301,7 +293,7 @@ CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
         ),
     },
 }
-TENDENCIES = frozenset({("avalanches", "compare")})  # said of most packings, not of each
+TENDENCIES = frozenset({("couette", "ratio")})  # said of most packings, not of each
 
 
 def play(scene: str, seed: int, check: Callable[[], None] = lambda: None) -> list[dict[str, Any]]:

@@ -25,13 +25,9 @@ from sandbox.studies.paper.claims import (
     where,
 )
 from sandbox.studies.paper.runs import Request, Result
-from scenes.scene import HAND_STRENGTH, STRONGEST
+from scenes.scene import BY_MACHINE
 
 KINDS = ("regular", "auxetic", "mixed")
-MACHINE = (
-    HAND_STRENGTH,
-    STRONGEST,
-)  # the paper drives its piston and its intruder wherever it wants
 STEADY = 0.25  # share of the drag that counts as its beginning
 FIRST_SEEDS = 5
 LAST = 0.25  # share of the piston's stroke that is averaged
@@ -49,7 +45,7 @@ def drags(quick: bool) -> list[Request]:
     seeds = range(1, 3 if quick else 11)
     settings = (("grains", 400), ("stroke", 10.0), ("step", 0.1)) if quick else (("grains", 600),)
     return [
-        Request("intruder", kind, seed, (*settings, MACHINE)) for kind in KINDS for seed in seeds
+        Request("intruder", kind, seed, (*settings, BY_MACHINE)) for kind in KINDS for seed in seeds
     ]
 
 
@@ -155,7 +151,7 @@ def pushes(quick: bool) -> list[Request]:
         ("friction", 0.5),
         ("orifice", 3.0),
         ("angle", 45.0),
-        MACHINE,
+        BY_MACHINE,
         ("step", 0.1 if quick else 0.05),
     )
     return [Request("hopper", kind, seed, settings) for kind in KINDS for seed in seeds]

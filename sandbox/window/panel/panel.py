@@ -101,7 +101,7 @@ class Panel(Silent):
         """Put the controls together anew; follow the keyboard."""
         del now
         if not self.drawer.shown:
-            self._arranged, self._places = None, Places((), 0)
+            self._arranged, self._places, self.scroll = None, Places((), 0), 0
             return False
         before, wanted = self._places, (self._controls(), self.stage.renderer.type, self.rect.width)
         if wanted != self._arranged:  # to find the places takes a millisecond
