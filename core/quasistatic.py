@@ -241,6 +241,11 @@ class Quasistatic:
             self._begin(*self._asked)
             return None
         report = replace(report, iterations=self._spent + report.iterations)
+        if good and contacts and self._limited and self._creeps(contacts, forces):
+            # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
+            self._take_back()
+            self.system.friction = remembered
+            return self._stand_still(report)
         if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self._take_back()
@@ -315,6 +320,39 @@ class Quasistatic:
             return False
         self._push.shorten(force)
         return True
+
+    def _creeps(
+        self,
+        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
+        friction: FrictionForces | None,
+    ) -> bool:
+        """True if nothing was moved, and the force has come above the strength of the hand all the same."""
+        force = self._hand_force(contacts[0], self._measure(contacts[1], friction))
+        return self._push.share == 0.0 and force > self._push.strength * (1.0 + SLACK)
+
+    def _stand_still(self, report: Report) -> Increment:
+        """An increment in which nothing has changed: its residual is that of the one before."""
+        self._last = np.zeros_like(self.packing.state)
+        self._own_motion = np.zeros_like(self.packing.state[:2])
+        self._last_moved = self._moved
+        pairs, bodies = self._contacts = self._contacts or self.contacts()
+        before = self.latest
+        same = before is not None and len(before.unbalanced) == len(self.packing)
+        if before is not None:
+            report = replace(before.report, iterations=report.iterations)
+        self.latest = Increment(
+            moved=self._moved,
+            pulled=self._pulled,
+            stopped=self._stopped,
+            share=0.0,
+            hand_force=self._hand_force(pairs, self.reactions),
+            report=report,
+            reactions=self.reactions,
+            grain_contacts=pairs,
+            body_contacts=bodies,
+            unbalanced=before.unbalanced if before and same else np.zeros(len(self.packing)),
+        )
+        return self.latest
 
     def _hand_force(self, pairs: observables.GrainContacts, reactions: Floats) -> float:
         """The hand's force along its pull [k R], the largest of those on several bodies; nan where it pulls at nothing."""

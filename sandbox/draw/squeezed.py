@@ -13,10 +13,10 @@ from sandbox.draw.world import places
 from sandbox.session.frame import Frame
 
 # At scale 1 [px].
-LEAST, MOST = 3.0, 8.0  # half a stroke across and up
-SHARE = 0.34  # of the grain's mean radius, in between: hardly ever beyond the grain
-WIDTH = 1.8  # of a stroke
-HALO = 1.2  # of the ground around it, so that it stands out from every colour and from the chains
+LEAST, MOST = 3.5, 9.0  # half a stroke across and up: seen from the back row
+SHARE = 0.4  # of the grain's mean radius, in between: hardly ever beyond the grain
+WIDTH = 2.2  # of a stroke
+HALO = 1.4  # of the ground around it, so that it stands out from every colour and from the chains
 
 
 def draw_squeezed(painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame) -> None:

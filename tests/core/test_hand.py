@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from core import generate
@@ -60,6 +60,7 @@ def hand_force(run: Quasistatic, done: Increment, name: str) -> float:
 
 
 @settings(max_examples=25, deadline=None)
+@example(body="piston", kind="regular", friction=0.5, strength=0.125, step=0.0625, way=0.0)
 @given(
     body=st.sampled_from(["piston", "disc"]),
     kind=st.sampled_from(["regular", "mixed", "auxetic"]),
