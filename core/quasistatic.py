@@ -245,7 +245,7 @@ class Quasistatic:
             # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
             self._take_back()
             self.system.friction = remembered
-            return self._stand_still(report)
+            return self._stand_still(report.iterations)
         if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self._take_back()
@@ -327,30 +327,41 @@ class Quasistatic:
         friction: FrictionForces | None,
     ) -> bool:
         """True if nothing was moved, and the force has come above the strength of the hand all the same."""
+        if (
+            self._push.share > 0.0 or self.system.drag > 0.0
+        ):  # with drag grains go on where no body moves
+            return False
         force = self._hand_force(contacts[0], self._measure(contacts[1], friction))
-        return self._push.share == 0.0 and force > self._push.strength * (1.0 + SLACK)
+        return force > self._push.strength * (1.0 + SLACK)
 
-    def _stand_still(self, report: Report) -> Increment:
-        """An increment in which nothing has changed: its residual is that of the one before."""
+    def _stand_still(self, spent: int) -> Increment:
+        """An increment in which nothing has changed, after ``spent`` force evaluations: one more tells how well it is relaxed."""
+        about, push = (self._moved, self._pulled, self._stopped), self._push
+        self._begin({}, None)
+        assert self._relaxation is not None
+        report = self._relaxation.run(1)
+        unbalanced = np.hypot(*self._relaxation.forces()[:2])
+        self._relaxation = None
+        self._take_back()  # a prediction, too
+        self._moved, self._pulled, self._stopped = about
+        self._push = push
+        if report.reason is StopReason.BUDGET:
+            report = replace(report, reason=StopReason.ITERATION_LIMIT)
         self._last = np.zeros_like(self.packing.state)
         self._own_motion = np.zeros_like(self.packing.state[:2])
         self._last_moved = self._moved
-        pairs, bodies = self._contacts = self._contacts or self.contacts()
-        before = self.latest
-        same = before is not None and len(before.unbalanced) == len(self.packing)
-        if before is not None:
-            report = replace(before.report, iterations=report.iterations)
+        pairs, bodies = self._contacts = self.contacts()
         self.latest = Increment(
             moved=self._moved,
             pulled=self._pulled,
             stopped=self._stopped,
             share=0.0,
             hand_force=self._hand_force(pairs, self.reactions),
-            report=report,
+            report=replace(report, iterations=spent + report.iterations),
             reactions=self.reactions,
             grain_contacts=pairs,
             body_contacts=bodies,
-            unbalanced=before.unbalanced if before and same else np.zeros(len(self.packing)),
+            unbalanced=unbalanced,
         )
         return self.latest
 

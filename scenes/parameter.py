@@ -65,7 +65,8 @@ class Parameter:
             or not isinstance(value, (int, float))
             or not abs(value) <= sys.float_info.max  # isfinite gives up on longer whole numbers
         ):
-            raise InputError(f"{self.name} must be a {self.kind}, not {shown(value)}")
+            word = f" or the word {self.top}" if self.top else ""
+            raise InputError(f"{self.name} must be a {self.kind}{word}, not {shown(value)}")
         if isinstance(self.default, int):
             if value != int(value):
                 raise InputError(f"{self.name} must be a whole number, not {shown(value)}")
@@ -74,8 +75,9 @@ class Parameter:
             value = float(value)
         if not self.low <= value <= self.high:
             unit = f" {self.unit}" if self.unit else ""
+            word = f", or be the word {self.top}" if self.top else ""
             raise InputError(
-                f"{self.name} must lie between {self.low:g} and {self.high:g}{unit}; {value:g} does not"
+                f"{self.name} must lie between {self.low:g} and {self.high:g}{unit}{word}; {value:.10g} does not"
             )
         return value
 
@@ -101,5 +103,8 @@ class Parameter:
         try:
             number = float(plain)
         except ValueError:
-            raise InputError(f"{self.name} must be a {self.kind}, not {shown(text)}") from None
+            word = f" or the word {self.top}" if self.top else ""
+            raise InputError(
+                f"{self.name} must be a {self.kind}{word}, not {shown(text)}"
+            ) from None
         return self.check(number)

@@ -129,7 +129,8 @@ class Course:
         stuck = {name: math.hypot(*way) < STUCK * step for name, way in increment.moved.items()}
         limited = "force limit" in increment.stopped.values()
         if increment.moved or CELL in increment.stopped:
-            still = all(stuck.values()) and increment.share == 0.0
+            # A body that cannot even give way, at a wall or at the end of its travel, is stuck as well.
+            still = all(stuck.values()) and (bool(stuck) or increment.share == 0.0)
             self.stuck = self.stuck + 1 if limited and still else 0
         if limited and self.script is not None:
             self.script = None if self.locked else self.script - 1

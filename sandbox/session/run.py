@@ -96,6 +96,8 @@ class Run:
         course.edited, course.moving = True, self.setup.drag > 0.0
         course.remarks = Remarks()
         course.notices.clear()
+        course.blocked.clear()  # what held may be gone
+        course.stuck = 0
         self.setup.world.redraw(made.walls)
         self.engine.take_over(made.packing)
         pairs, bodies = self.engine.contacts()
@@ -311,19 +313,26 @@ class Run:
         course, way = self.course, self.way
         words = f"locked at {self.strength:g} k R"
         if way is not None:
-            words += f" after {way:.1f} R of stroke"
+            words += (
+                f" after {way:.1f} R of stroke" if way >= 0.0 else f", pushed back by {-way:.1f} R"
+            )
         if self.setup.outlet is not None:
             words += f": {course.out} of {course.initial} out"
         return words
 
     @property
     def way(self) -> float | None:
-        """How far the body in the hand has come from where it first stood [R]; None for a periodic cell."""
+        """How far the body in the hand has come from where it first stood [R]; None for a periodic cell.
+
+        Negative for one on a guide that was pushed back.
+        """
         name = self.setup.handles[0].body
         if name == CELL:
             return None
         body = self.setup.world[name]
-        return math.dist(body.position, body.home)
+        if body.axis is None:
+            return math.dist(body.position, body.home)
+        return float(np.dot(np.subtract(body.position, body.home), body.axis))
 
     @property
     def hand_force(self) -> float:

@@ -10,10 +10,11 @@ from core.packing import Packing
 from core.rigid import Point
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
-from scenes.scene import Check
+from scenes.scene import HAND_STRENGTH, STRONGEST, Check
 
 KEPT = "no grain is lost and none has passed a wall"
-SHORT: dict[str, object] = {"grains": 160, "step": 0.1}
+MACHINE: dict[str, object] = {HAND_STRENGTH: STRONGEST}  # a weaker hand is locked before
+SHORT: dict[str, object] = {"grains": 160, "step": 0.1, **MACHINE}
 FEW: dict[str, dict[str, object]] = {"couette": {"grains": 160}}
 
 
@@ -48,7 +49,7 @@ def test_it_holds_after_every_increment_of_whole_runs(kind: str) -> None:
 def test_who_was_pushed_under_the_funnel_has_left(
     grains: int, kind: str, seed: int, burst: int
 ) -> None:
-    session = Session("hopper", kind, seed, {"grains": grains})
+    session = Session("hopper", kind, seed, {"grains": grains, **MACHINE})
     session.build()
     session.submit(Protocol(True))
     done = 0

@@ -11,7 +11,7 @@ import pytest
 from core.hand import SLACK
 from sandbox.files.log_file import read_log, write_log
 from sandbox.files.scene_file import read_scene, write_scene
-from sandbox.session.commands import Change, Grab, Move, Protocol
+from sandbox.session.commands import Change, Erase, Grab, Move, Protocol
 from sandbox.session.session import Session
 from scenes import registry
 from scenes.scene import HAND_STRENGTH, STRONGEST
@@ -111,6 +111,34 @@ def test_what_is_locked_stays_locked_however_often_it_is_tried() -> None:
         for _ in session.slices(400):
             pass
     assert session.run.way == pytest.approx(way, abs=1e-3)
+
+
+def test_a_hand_that_cannot_give_way_ends_too() -> None:
+    """Grains that press harder than the hand has, and a piston at the end of its travel: locked, not for ever at it."""
+    session = small("hopper", hand_strength=0.01, packing_fraction=0.88)
+    drive(session, 400)
+    assert session.idle
+    assert session.run.locked
+    assert "pushed back by" in session.run.how_locked
+    assert session.run.way is not None
+    assert session.run.way < 0.0
+
+
+def test_what_held_may_be_erased_and_the_hand_goes_on() -> None:
+    session = small("hopper", friction=0.5)
+    x, y = session.run.setup.world["piston"].position
+    session.submit(Grab("piston"))
+    session.submit(Move("piston", x, y - 9.0))
+    for _ in session.slices(400):
+        pass
+    assert session.run.locked
+    way = session.run.way
+    assert way is not None
+    session.submit(Erase(0.0, 0.0, 60.0))
+    for _ in session.slices(400):
+        pass
+    assert session.run.way is not None
+    assert session.run.way > way + 1.0
 
 
 def test_a_scene_without_limits_has_no_limit_in_the_plot() -> None:
