@@ -115,7 +115,7 @@ def test_what_is_locked_stays_locked_however_often_it_is_tried() -> None:
 
 def test_a_hand_that_cannot_give_way_ends_too() -> None:
     """Grains that press harder than the hand has, and a piston at the end of its travel: locked, not for ever at it."""
-    session = small("hopper", hand_strength=0.01, packing_fraction=0.88)
+    session = small("hopper", hand_strength=0.01, packing_fraction=0.92, orifice=0.5)
     drive(session, 400)
     assert session.idle
     assert session.run.locked
@@ -125,7 +125,7 @@ def test_a_hand_that_cannot_give_way_ends_too() -> None:
 
 
 def test_what_held_may_be_erased_and_the_hand_goes_on() -> None:
-    session = small("hopper", friction=0.5)
+    session = small("hopper", orifice=0.5)
     x, y = session.run.setup.world["piston"].position
     session.submit(Grab("piston"))
     session.submit(Move("piston", x, y - 9.0))
