@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -104,7 +103,7 @@ def draw_plot(
     curves: Sequence[Curve],
     label: str,
     stroke_label: str = "",
-    limit: float = math.inf,
+    limit: float | None = None,
 ) -> None:
     """Axes and curves. One alone has its present value in the headline; several are named at their ends.
 
@@ -150,7 +149,7 @@ def draw_plot(
             words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
         )
         return
-    if limit <= axes[3]:
+    if limit is not None and limit <= axes[3]:
         _draw_limit(painter, box, limit)
     _draw_curves(painter, box, curves, parts)
     ends = [

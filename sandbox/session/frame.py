@@ -159,7 +159,8 @@ class Frame:
     curve_label: str  # e.g. "force on the intruder [k R]"
 
     stroke_label: str = "stroke [R]"
-    hand_limit: float = math.inf  # strength of the hand [k R], where its force is what is plotted
+    # Strength of the hand [k R], where it has a limit and its force is what is plotted.
+    hand_limit: float | None = None
 
     # Only in a periodic cell: width and height (inf where open) and the shift of the image above.
     box: tuple[float, float, float] | None = None  # [R]

@@ -64,7 +64,7 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         spin=None if run.setup.friction is None else run.setup.friction.spin.copy(),
         curve_label=_force_label(run),
         stroke_label="stroke [R]" if curve is None else curve.stroke_label,
-        hand_limit=run.setup.solver.hand_strength if curve is None else math.inf,
+        hand_limit=run.strength if curve is None and math.isfinite(run.strength) else None,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
         residual_force=run.last.unbalanced.copy(),

@@ -143,9 +143,7 @@ def test_what_held_may_be_erased_and_the_hand_goes_on() -> None:
 
 def test_a_scene_without_limits_has_no_limit_in_the_plot() -> None:
     frame = small("hopper", hand_strength=STRONGEST).frame()
-    assert frame.hand_limit == math.inf
+    assert frame.hand_limit is None
     assert replace(frame, hand_limit=6.0).hand_limit == 6.0
     assert small("hopper", hand_strength=4.0).frame().hand_limit == 4.0
-    assert (
-        small("biaxial_press", hand_strength=4.0).frame().hand_limit == math.inf
-    )  # plots pressure
+    assert small("biaxial_press", hand_strength=4.0).frame().hand_limit is None  # plots pressure
