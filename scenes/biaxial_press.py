@@ -21,7 +21,6 @@ from scenes.scene import (
     FRICTION,
     MATERIAL,
     SOLVER,
-    STRONGEST,
     Check,
     Curve,
     Handle,
@@ -65,7 +64,7 @@ class BiaxialPress(Scene):
             "compression", 0.2, "", 0.01, 0.5, "largest loss of area, as a share of it", live=True
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
-        hand(STRONGEST),
+        hand(40.0),
         *MATERIAL,
         *SOLVER,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 from collections.abc import Callable, Mapping
@@ -25,6 +26,9 @@ DATA_VERSION = 1  # of what a run writes down
 SLICE = 400  # force evaluations between two looks at whether to stop
 GESTURES = 8  # of a random hand
 LONGEST = 12  # increments of one gesture
+MOST = (
+    2  # a weak hand takes more increments than the script has; a hopper is shaken until it is empty
+)
 FLUNG, HELD = (
     0.25,
     100,
@@ -69,11 +73,13 @@ def carry_out(job: Job, stopping: Stopping = lambda: False) -> Row:
 
 
 def push(job: Job, check: Callable[[], None]) -> Row:
-    """The scripted drive, until it has ended or the hand is locked."""
+    """The scripted drive, until it has ended or the hand is locked; at most ``MOST`` times its length: one may go on for ever."""
     session = Session(job.scene, job.packing, job.seed, job.settings())
     session.build()
     session.submit(Protocol(True))
-    forces = [session.run.hand_force for _ in session.increments(SLICE, check)]
+    steps = MOST * session.scene.steps(session.settings)
+    increments = itertools.islice(session.increments(SLICE, check), steps)
+    forces = [session.run.hand_force for _ in increments]
     reasons = session.history.column("stop_reason")
     way = session.run.way
     pushing = np.array([force for force in forces if math.isfinite(force)])
