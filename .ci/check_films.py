@@ -32,14 +32,16 @@ def run(*words: str) -> str:
     return done.stdout
 
 
-def check(scene: str, packing: str, folder: Path) -> str:
-    """Record a scene; what was measured, or an AssertionError."""
+def check(scene: str, packing: str, folder: Path, limited: bool) -> str:
+    """Record a scene; what was measured, or an AssertionError. A hand that is ``limited`` gives way to a testing machine."""
+    machine = ("--set", "hand_strength=machine") if limited else ()
     film, table = folder / f"{scene}-{packing}.mp4", folder / f"{scene}-{packing}.csv"
     size = "x".join(map(str, SIZE))
     print(
         run(
             *("record", scene, "--packing", packing, "--steps", str(STEPS), "--size", size),
             *("--out", str(film), "--data", str(table)),
+            *machine,
         ),
         end="",
     )
@@ -74,7 +76,8 @@ def main() -> None:
     assert scenes, "there is no scene"
     for scene in scenes:
         if options.packing in scene["packings"]:
-            measured = check(scene["name"], options.packing, options.folder)
+            limited = any(p["name"] == "hand_strength" for p in scene["parameters"])
+            measured = check(scene["name"], options.packing, options.folder, limited)
             print(f"{scene['name']}, {options.packing}: {measured}", flush=True)
 
 

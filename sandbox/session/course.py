@@ -13,7 +13,7 @@ from core.relaxation import FAILED, StopReason
 from core.rigid import Point
 from sandbox.session.history import Row
 from scenes.accuracy import Accuracy
-from scenes.scene import Remarks, Setup
+from scenes.scene import STRONGEST, Remarks, Setup
 from scenes.text import Text
 
 LOCKED_AFTER = 3  # increments in a row that all the strength of the hand could not make
@@ -116,7 +116,7 @@ class Course:
             stop_reason=str(report.reason),
             resisting=float(resisting),
             force_error=accuracy.force_error(report.residual, report.mean_contact_force),
-            hand_strength=setup.solver.hand_strength,
+            hand_strength=min(setup.solver.hand_strength, STRONGEST),
         )
 
     def tell_what_stopped(self, setup: Setup, increment: Increment) -> None:

@@ -27,7 +27,7 @@ class Row:
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
     force_error: float = math.nan  # estimate for the force on the handle [k R], see ``Accuracy``
-    hand_strength: float = math.inf  # the most that the hand could give [k R]
+    hand_strength: float = 0.0  # the most that the hand could give [k R], as it is set
 
     @property
     def magnitude(self) -> float:
@@ -61,7 +61,7 @@ _HEADER = (
     "stop reason",
     "force against the drive [k R]",
     "estimated error of the force on the handle [k R]",
-    "hand strength [k R] (inf: a testing machine)",
+    "hand strength [k R] (1000: a testing machine)",
 )
 
 

@@ -79,7 +79,7 @@ def test_a_weak_hand_is_locked_in_every_scene(name: str) -> None:
     rows = len(session.history)
     session.submit(Change(HAND_STRENGTH, STRONGEST))
     drive(session, rows + 6)
-    assert session.history[-1].hand_strength == math.inf
+    assert session.history[-1].hand_strength == STRONGEST
     assert not session.frame().events[-1].increment >= rows
 
 
