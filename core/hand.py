@@ -59,9 +59,13 @@ class Push:
     share: float = 1.0
     tries: int = 1
 
+    def too_much(self, force: float) -> bool:
+        """True if that is more force [k R] than the hand has."""
+        return force > self.strength * (1.0 + SLACK)
+
     def overpowered(self, force: float) -> bool:
         """True if the way that was tried takes more force [k R] than the hand has, and a shorter one is to be tried."""
-        return self.share > 0.0 and force > self.strength * (1.0 + SLACK)
+        return self.share > 0.0 and self.too_much(force)
 
     def shorten(self, force: float) -> None:
         """A way on which the force should just be what the hand has, by what it was before and after the one that was too long.

@@ -20,7 +20,7 @@ from core.coincidence import part_coincident
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction, FrictionForces, FrozenContacts
-from core.hand import CELL, SLACK, Push, force_on_body, force_on_box
+from core.hand import CELL, Push, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
 from core.relaxation import FAILED, Relaxation, Report, StopReason
@@ -286,7 +286,7 @@ class Quasistatic:
             forces[name] = force_on_body(self._push_on(name, self.reactions), pull)
             if share == 0.0:
                 moved, stopped = (0.0, 0.0), None
-            elif forces[name] > solver.hand_strength * (1.0 + SLACK):
+            elif self._push.too_much(forces[name]):
                 moved, stopped = self.world.give_way(name, pull, solver.step), "force limit"
             else:
                 moved, stopped = self.world.advance(name, target, share * solver.step)
@@ -307,7 +307,7 @@ class Quasistatic:
             self.packing.box == self._start_box
         ):
             return False
-        if self._asked[0] and self._push.before > self._push.strength * (1.0 + SLACK):
+        if self._asked[0] and self._push.too_much(self._push.before):
             return False  # it has given way
         if contacts is None:
             force = math.inf
@@ -327,12 +327,12 @@ class Quasistatic:
         friction: FrictionForces | None,
     ) -> bool:
         """True if nothing was moved, and the force has come above the strength of the hand all the same."""
-        if (
-            self._push.share > 0.0 or self.system.drag > 0.0
-        ):  # with drag grains go on where no body moves
+        # With drag grains go on where no body moves.
+        if self._push.share > 0.0 or self.system.drag > 0.0:
             return False
-        force = self._hand_force(contacts[0], self._measure(contacts[1], friction))
-        return force > self._push.strength * (1.0 + SLACK)
+        return self._push.too_much(
+            self._hand_force(contacts[0], self._measure(contacts[1], friction))
+        )
 
     def _stand_still(self, spent: int) -> Increment:
         """An increment in which nothing has changed, after ``spent`` force evaluations: one more tells how well it is relaxed."""

@@ -13,12 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from core.relaxation import FAILED
 from sandbox import __version__
 from sandbox.session.commands import Grab, Move, Protocol, Release
 from sandbox.session.session import Session
 from sandbox.studies.common.pool import Stopped
-from sandbox.studies.hand.tour_claims import play
+from sandbox.studies.hand.tour_claims import BROKEN, play
 from scenes import registry
 from scenes.scene import HAND_STRENGTH
 
@@ -34,7 +33,6 @@ FLUNG, HELD = (
     100,
 )  # of the gestures aim far beyond the scene, and go on for so many increments
 FAR = 1e4  # [R]
-BROKEN = frozenset(map(str, FAILED))
 
 Stopping = Callable[[], bool]
 Row = dict[str, Any]

@@ -10,8 +10,8 @@ from statistics import mean, median
 from typing import Any
 
 from sandbox.studies.common.folder import finite
-from sandbox.studies.hand.jobs import BROKEN, Row
-from sandbox.studies.hand.tour_claims import TENDENCIES
+from sandbox.studies.hand.jobs import Row
+from sandbox.studies.hand.tour_claims import BROKEN, TENDENCIES
 from scenes.scene import STRONGEST
 
 FORMAT = "auxetic-sandbox study of the hand"
