@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from core import sweeps, threads
 from core.contacts import prepare, slot_force_sum
-from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
+from core.slip import add_friction_forces
 from core.steering import ALPHA_START, DT_START, steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
@@ -120,7 +120,7 @@ def fresh_control(dt_max: float) -> NDArray[np.void]:
 
 
 @kernel
-def relist(m, box, rigid, friction, skin):
+def relist(m, box, rigid, skin):
     """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
 
     A kernel of its own, called between slices of ``run``: lists are rebuilt hundreds of times less often than forces.
@@ -138,8 +138,6 @@ def relist(m, box, rigid, friction, skin):
     permute(m.grains.area_stiffness, order, m.scratch)
     permute(m.grains.shape_stiffness, order, m.scratch)
     permute(m.identity, order, m.scratch_identity)
-    if friction is not None:
-        settle_places(m.identity, friction)
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
         return RIGID_FULL
     m.reference[:] = m.state
@@ -187,15 +185,15 @@ def evaluate(m, box, rigid, friction, gravity, shared):
         )
     energy = 0.0
     if rigid is not None:
-        energy += add_rigid_forces(state, support, grains.contact_stiffness, force, rigid, box)
+        seen = None if friction is None else friction.touch
+        energy += add_rigid_forces(
+            state, support, grains.contact_stiffness, force, rigid, box, seen
+        )
     if gravity is not None:
         energy += add_weight(
             state[0], state[1], grains.rest_area, m.identity, force[0], force[1], gravity
         )
-    if friction is not None:
-        force[5] = 0.0
-        energy += add_friction_forces(state, force, friction)
-    # Last, since it turns the contact sums into forces.
+    # It turns the contact sums into forces.
     if shared is None:
         own = sweeps.all_forces(
             state,
@@ -225,7 +223,11 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             box,
             shared.sums,
         )
-    return add(energy, own)
+    energy = add(energy, own)
+    if friction is not None:
+        force[5] = 0.0
+        energy = add(energy, add_friction_forces(state, force, friction, rigid, box))
+    return energy
 
 
 @kernel

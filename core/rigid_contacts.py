@@ -251,8 +251,11 @@ def changed_sides(before, after, rigid, box):
 
 
 @kernel
-def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box):
-    """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
+def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box, seen):
+    """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²].
+
+    ``seen`` (4, K): where overlap, n and h of each listed pair are left for friction, or None.
+    """
     # Every array is fetched once: inside the loop each look into the tuple would cost two atomic reference counts.
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     x, y = state[0], state[1]
@@ -264,6 +267,11 @@ def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigi
         m = primitive[k]
         xi, yi = image(primitives, m, x[i], y[i], box)
         overlap, nx, ny, h, slope = touch(primitives, m, xi, yi, s[i], u[i], v[i])
+        if seen is not None:
+            seen[0, k] = overlap
+            seen[1, k] = nx
+            seen[2, k] = ny
+            seen[3, k] = h
         if overlap <= 0.0:  # written so that nan passes, and is found
             continue
         f = contact_stiffness[i] * overlap
