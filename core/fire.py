@@ -22,7 +22,7 @@ from core.contacts import prepare, slot_force_sum
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
-from core.slip import add_friction_forces
+from core.slip import prepare_friction
 from core.steering import ALPHA_START, DT_START, steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
@@ -183,11 +183,12 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             force[3],
             force[4],
         )
+        if friction is not None:
+            prepare_friction(0, state.shape[1], state, friction)
     energy = 0.0
     if rigid is not None:
-        seen = None if friction is None else friction.touch
         energy += add_rigid_forces(
-            state, support, grains.contact_stiffness, force, rigid, box, seen
+            state, support, grains.contact_stiffness, force, rigid, box, friction
         )
     if gravity is not None:
         energy += add_weight(
@@ -207,6 +208,7 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             grains.area_stiffness,
             grains.shape_stiffness,
             box,
+            friction,
         )
     else:
         own = threads.all_forces(
@@ -221,13 +223,10 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             grains.area_stiffness,
             grains.shape_stiffness,
             box,
+            friction,
             shared.sums,
         )
-    energy = add(energy, own)
-    if friction is not None:
-        force[5] = 0.0
-        energy = add(energy, add_friction_forces(state, force, friction, rigid, box))
-    return energy
+    return add(energy, own)
 
 
 @kernel
@@ -299,7 +298,7 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
             if shared is None:
                 drift(state, velocity, step)
             else:
-                threads.move(m.state, m.velocity, step, m.support, m.force)
+                threads.move(m.state, m.velocity, step, m.support, m.force, friction)
             # 4 × the largest change of any degree of freedom bounds displacement plus growth of one grain.
             control.moved += 4.0 * step * fastest
             if not control.moved <= 0.5 * limits.skin:
@@ -310,7 +309,7 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
             control.pending = True  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
         if shared is not None and control.pending:
-            threads.move(m.state, m.velocity, 0.0, m.support, m.force)
+            threads.move(m.state, m.velocity, 0.0, m.support, m.force, friction)
         control.pending = False
         control.energy = evaluate(m, box, rigid, friction, gravity, shared)
         if np.isnan(control.start_energy):

@@ -21,14 +21,8 @@ from core.fire import Minimizer
 from core.observables import GrainContacts, RigidContacts
 from core.packing import MAX_LABEL, PeriodicBox
 from core.rigid_contacts import EDGE, VERTEX, RigidTerms
-from core.slip import (
-    OUTPUTS,
-    TANGENTIAL_STIFFNESS,
-    FrictionTerms,
-    look_at_bodies,
-    measure,
-    pulls,
-)
+from core.marks import lay_out, measure, slips
+from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms, prepare_friction
 
 Indices = NDArray[np.int64]
 Box = tuple[float, ...]
@@ -124,31 +118,29 @@ class FrictionalContacts:
         self._origin = origin
         self._keys, self._slips = origin.keys, origin.slips
         self._turn = origin.turn
-        self._corners = None if rigid is None else _corners(rigid.primitives)  # (M, 2)
-        self._listed: Indices | None = None  # keys of the candidates
-        none, empty = np.zeros(0), np.zeros(0, dtype=np.int64)
+        self._primitives = np.zeros((0, 8)) if rigid is None else rigid.primitives
+        self._corners = _corners(self._primitives)
+        self._listed: Indices | None = None  # keys of the pairs, first those of two grains
+        count = len(origin.label)
+        self._at_i = self._at_j = np.zeros(0, dtype=np.uint32)
+        self._primitive = np.zeros(0, dtype=np.int64)
+        self._marks = np.zeros((4, 0))
         self.terms = FrictionTerms(
             coefficient=origin.coefficient,
-            at_i=np.zeros(0, dtype=np.uint32),
-            at_j=np.zeros(0, dtype=np.uint32),
-            primitive=empty,
+            origin=np.zeros((4, count)),
+            change=np.zeros((5, count)),
+            sums=np.zeros((5, count)),
+            marks=np.zeros((4, 0)),
+            body_marks=np.zeros((4, 0)),
             turn=origin.turn,
-            origin=np.zeros((4, 0)),
-            stiffness=none,
-            slip=none,
-            gap=none,
-            start_x=none,
-            start_y=none,
-            touch=np.zeros((4, 0)),
-            out=np.zeros((OUTPUTS, 0)),
         )
 
-    def commit(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
+    def commit(self, m: Minimizer, box: Box | None) -> None:
         """Remember what every contact holds now. Before new lists, while ``m`` stands in the order of the old ones."""
         if self._listed is None:
             return
-        self._evaluate(m, rigid, box)
-        self._keys, self._slips = self._held()
+        _, held = self._measure(m, box)
+        self._keys, self._slips = self._hold(held)
         self._turn = np.zeros_like(self._turn)
 
     def relist(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
@@ -156,94 +148,86 @@ class FrictionalContacts:
         lists = m.lists
         pairs = int(lists.width.sum()) // 2
         at_i, at_j = lists.place[lists.first[:pairs]], lists.place[lists.second[:pairs]]
-        used = 0 if rigid is None else int(rigid.used[0])
-        grain, primitive = np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+        grain = primitive = np.zeros(0, dtype=np.int64)
         if rigid is not None:
+            used = int(rigid.used[0])
             grain, primitive = rigid.grain[:used], rigid.primitive[:used].copy()
         label = self._origin.label[m.identity]
         a, b = label[at_i], label[at_j]
         keys = np.concatenate(
             [np.minimum(a, b) * GRAIN + np.maximum(a, b), label[grain] * GRAIN + BODY + primitive]
         )
-        first = self._listed is None
-        start = np.zeros((6, len(m.identity)))
-        if first:
+        start, primitives, cell = m.state, self._primitives, box
+        if self._listed is None:
+            start = np.zeros((6, len(label)))
             start[:5] = self._origin.state[:, m.identity]
             primitives = self._origin.primitives
             cell = None if self._origin.box is None else self._origin.box.kernel_form()
-        else:
-            start[:] = m.state
-            primitives = np.zeros((0, 8)) if rigid is None else rigid.primitives
-            cell = box
-        both = np.concatenate([at_i, grain]).astype(np.uint32)
-        place = np.empty((6, len(both)))
-        measure(both, at_j.astype(np.uint32), primitive, start, primitives, cell, place)
-        gap = np.maximum(place[0], 0.0)
+        self._at_i = np.concatenate([at_i, grain]).astype(np.uint32)
+        self._at_j = at_j.astype(np.uint32)
+        place = np.empty((7, len(keys)))
+        measure(self._at_i, self._at_j, primitive, start, primitives, cell, place)
         slip, known = self._recall(keys)
-        if self._corners is not None:
-            self._round_corners(grain, primitive, slip[pairs:], gap[pairs:], known[pairs:])
-        c = m.grains.contact_stiffness
-        contact = np.concatenate([2.0 * c[at_i] * c[at_j] / (c[at_i] + c[at_j]), c[grain]])
+        gap = np.maximum(place[0], 0.0)
+        self._round_corners(grain, primitive, slip[pairs:], gap[pairs:], known[pairs:])
+        self._marks = np.array([slip, gap, place[1], place[2]])
+        slots = np.zeros((4, len(lists.neighbor)))
+        lay_out(lists, self._at_i, self._at_j, self._marks, lists.filled, slots)
         self.terms = self.terms._replace(
-            at_i=both,
-            at_j=at_j.astype(np.uint32),
-            primitive=primitive,
+            origin=start[2:].copy(),
+            marks=slots,
+            body_marks=np.ascontiguousarray(self._marks[:, pairs:]),
             turn=self._turn,
-            origin=np.ascontiguousarray(start[2:]),
-            stiffness=TANGENTIAL_STIFFNESS * contact,
-            slip=slip,
-            gap=gap,
-            start_x=place[1],
-            start_y=place[2],
-            touch=np.zeros((4, used)),
-            out=np.zeros((OUTPUTS, len(both))),
         )
+        self._primitive = primitive
         self._listed = keys
 
-    def end(
-        self, m: Minimizer, rigid: RigidTerms | None, box: Box | None
-    ) -> tuple[Indices, Floats, FrictionForces]:
+    def end(self, m: Minimizer, box: Box | None) -> tuple[Indices, Floats, FrictionForces]:
         """What the contacts remember, keys and slips [R], and the forces that they stand for, in the packing's order."""
-        if self._listed is None:
-            none, empty = np.zeros(0), np.zeros(0, dtype=np.int64)
-            return empty, none, FrictionForces(empty, empty, empty, *[none] * 6, none > 0.0)
-        self._evaluate(m, rigid, box)
-        terms, pairs = self.terms, len(self.terms.at_j)
-        keys, slips = self._held()
-        touching = terms.out[0] > 0.0
-        place = np.empty((6, len(touching)))
-        primitives = np.zeros((0, 8)) if rigid is None else rigid.primitives
-        measure(terms.at_i, terms.at_j, terms.primitive, m.state, primitives, box, place)
-        gap, dx, dy, nx, ny, h = place
-        grain, other = m.identity[terms.at_i], np.full(len(touching), -1)
-        other[:pairs] = m.identity[terms.at_j]
-        primitive = np.full(len(touching), -1)
-        primitive[pairs:] = terms.primitive
+        place, held = self._measure(m, box)
+        pairs = len(self._at_j)
+        gap, dx, dy, nx, ny, h, _ = place
+        x, y = m.state[0, self._at_i], m.state[1, self._at_i]
+        first = self._primitives[self._primitive]
+        x[pairs:], y[pairs:] = first[:, 1] + dx[pairs:], first[:, 2] + dy[pairs:]
+        dx[pairs:], dy[pairs:] = h[pairs:] * nx[pairs:], h[pairs:] * ny[pairs:]
         reach = h.copy()
         reach[:pairs] += 0.5 * gap[:pairs]  # half way between the outlines
-        x, y = m.state[0, terms.at_i] + reach * nx, m.state[1, terms.at_i] + reach * ny
-        x[pairs:] = primitives[terms.primitive, 1] + dx[pairs:] + (h * nx)[pairs:]
-        y[pairs:] = primitives[terms.primitive, 2] + dy[pairs:] + (h * ny)[pairs:]
-        dx[pairs:], dy[pairs:] = (h * nx)[pairs:], (h * ny)[pairs:]
-        found = (grain, other, primitive, terms.out[2], terms.out[3], x, y, dx, dy)
-        sliding = np.abs(terms.out[1]) >= terms.out[0]
-        forces = FrictionForces(*(v[touching] for v in (*found, sliding)))
-        return keys, slips, forces
+        grain = m.identity[self._at_i]
+        other, primitive = np.full(len(grain), -1), np.full(len(grain), -1)
+        other[:pairs] = m.identity[self._at_j]
+        primitive[pairs:] = self._primitive
+        slip, limit = held
+        pull = self._stiffness(m) * slip
+        found = (grain, other, primitive, pull * ny, -pull * nx, x + reach * nx, y + reach * ny)
+        touching = limit > 0.0
+        forces = FrictionForces(*(v[touching] for v in (*found, dx, dy, np.abs(slip) >= limit)))
+        return *self._hold(held), forces
 
-    def _evaluate(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
-        """Caps and pulls as things stand now."""
-        if rigid is not None:
-            look_at_bodies(m.state, self.terms, rigid, box)
-        pulls(m.state, self.terms, rigid, box)
+    def _stiffness(self, m: Minimizer) -> Floats:
+        """k_t of all pairs (K,) [k]."""
+        c = m.grains.contact_stiffness
+        i, j = self._at_i, self._at_j
+        first, second = c[i[: len(j)]], c[j]
+        both = np.concatenate([2.0 * first * second / (first + second), c[i[len(j) :]]])
+        return TANGENTIAL_STIFFNESS * both
 
-    def _held(self) -> tuple[Indices, Floats]:
-        """Keys, ascending, and clipped slips [R] of the contacts that touch."""
-        assert self._listed is not None
-        touching = self.terms.out[0] > 0.0
-        keys = self._listed[touching]
+    def _measure(self, m: Minimizer, box: Box | None) -> tuple[Floats, Floats]:
+        """Geometry (7, K) and slips with their limits (2, K) of all pairs as they stand now."""
+        place, held = np.empty((7, len(self._at_i))), np.empty((2, len(self._at_i)))
+        pairs = self._at_i, self._at_j, self._primitive
+        measure(*pairs, m.state, self._primitives, box, place)
+        prepare_friction(0, m.state.shape[1], m.state, self.terms)
+        slips(*pairs, self._marks, m.state, self.terms, self._primitives, box, place, held)
+        return place, held
+
+    def _hold(self, held: Floats) -> tuple[Indices, Floats]:
+        """Keys, ascending, and slips [R] of the contacts that touch."""
+        listed = np.zeros(0, dtype=np.int64) if self._listed is None else self._listed
+        touching = held[1] > 0.0
+        keys = listed[touching]
         order = np.argsort(keys, kind="stable")
-        slips = (self.terms.out[1] / self.terms.stiffness)[touching]
-        return keys[order], slips[order]
+        return keys[order], held[0, touching][order]
 
     def _recall(self, keys: Indices) -> tuple[Floats, NDArray[np.bool_]]:
         """What the contacts with these keys remember, 0 for new ones; and which do."""
@@ -262,7 +246,6 @@ class FrictionalContacts:
         known: NDArray[np.bool_],
     ) -> None:
         """An edge and the vertex at its end share, for each grain (B,), the slip of the one that has any, and the gap."""
-        assert self._corners is not None
         many = len(self._corners)
         key = grain * many + primitive
         order = np.argsort(key, kind="stable")

@@ -188,7 +188,7 @@ class Relaxation:
     def slips(self) -> tuple[NDArray[np.int64], NDArray[np.float64], FrictionForces]:
         """What frictional contacts remember, and their forces: see ``FrictionalContacts.end``. Only with friction."""
         assert self._friction is not None
-        return self._friction.end(self._minimizer, self._rigid, self._box)
+        return self._friction.end(self._minimizer, self._box)
 
     def forces(self) -> NDArray[np.float64]:
         """Generalised forces (5, N), with friction (6, N), of the latest evaluation [k R], in the packing's own order."""
@@ -213,7 +213,7 @@ class Relaxation:
         self._listed = True
         friction = self._friction
         if friction is not None:
-            friction.commit(self._minimizer, self._rigid, self._box)
+            friction.commit(self._minimizer, self._box)
         while True:
             answer = fire.relist(self._minimizer, self._box, self._rigid, self._limits.skin)
             if answer == neighbors.FIT:

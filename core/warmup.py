@@ -73,4 +73,4 @@ def _contact_forces(m: fire.Minimizer, box: tuple[float, ...] | None) -> None:
     rows, lists = m.force, m.lists
     contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
     slots = lists.width, lists.offset, lists.neighbor, lists.stiffness
-    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box)
+    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box, None)
