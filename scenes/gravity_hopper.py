@@ -209,9 +209,17 @@ class GravityHopper(Scene):
         if found is None:
             text = Text("at rest: {count} grains stay on the funnel's sides", count=count)
             return Remarks((text,))
+        arch = int(found.sum())
+        if count == latest.at_start:
+            text = Text(
+                "never started: an arch of {arch} holds all {count} grains. Shake the funnel",
+                arch=arch,
+                count=count,
+            )
+            return Remarks((text,), found, {"arch": text})
         text = Text(
             "clogged: an arch of {arch} holds {count} grains. Shake the funnel",
-            arch=int(found.sum()),
+            arch=arch,
             count=count,
         )
         return Remarks((text,), found, {"clog": text})
