@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.arrays import Floats
+from core.endless import endless
 from core.errors import InputError
 from core.jit import kernel
 from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
@@ -181,7 +182,7 @@ def _place(
     else:
         assert box is not None
         low, high = np.zeros(2), np.array([box.width, box.height])
-    primitives, _ = world.primitives()
+    primitives = endless(world.primitives()[0], box)
     reach = 2.0 * float(radius.max(initial=1.0))
     columns = max(1, int((high[0] - low[0]) / reach))
     rows = max(1, int((high[1] - low[1]) / reach))
