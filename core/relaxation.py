@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import fire, neighbors, rigid_contacts
+from core.endless import endless
 from core.errors import InputError
 from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
 from core.material import area_modulus, deformation_stiffness, shape_modulus
@@ -92,7 +93,7 @@ class Relaxation:
         _check_box(packing, skin)
         self._rigid = None
         if primitives is not None and len(primitives):
-            self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
+            self._rigid = rigid_contacts.allocate(endless(primitives, packing.box), max(count, 1))
         self._friction = friction
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
