@@ -31,6 +31,8 @@ SIZE_RATIO = 1.4
 PLACED_FRACTION = (
     0.38  # packing fraction of the random placement; random addition of discs saturates at 0.547
 )
+MOST_DENSE = 1.5  # packing fraction that can be asked for
+NO_ROOM = "the grains do not fit: lower the packing fraction or enlarge the container"
 GROWTH = 0.02  # largest relative growth of the radii between two relaxations
 ROUGH, FINE = 1e-1, 1e-3  # tolerances while growing, and at the end
 KINDS = ("regular", "auxetic", "mixed")
@@ -104,10 +106,11 @@ def pack(
         raise InputError("the seed must be 0 or a positive whole number")
     if packing_fraction is None:
         packing_fraction = 0.84
-    if not 0.01 <= packing_fraction <= 1.5:
-        raise InputError("the packing fraction must lie between 0.01 and 1.5")
+    if not 0.01 <= packing_fraction <= MOST_DENSE:
+        raise InputError(f"the packing fraction must lie between 0.01 and {MOST_DENSE}")
     if count is not None and count < 0:
         raise InputError("the number of grains must be 0 or more")
+    counted = count is not None
     random = np.random.default_rng(seed)
     world = world or RigidWorld()
     if outline is None and box is None:
@@ -123,6 +126,8 @@ def pack(
     else:
         area = open_area(outline, world, box)
     fraction = float(np.pi * np.sum(radius**2)) / area
+    if counted and fraction > MOST_DENSE:
+        raise InputError(NO_ROOM)
     scale = min(1.0, math.sqrt(PLACED_FRACTION / max(fraction, 1e-9)))
     x, y = _place(radius * scale, outline, world, box, random)
     packing = Packing(x, y, radius, nu, recipe.contact_stiffness, box=box)
@@ -132,9 +137,7 @@ def pack(
         packing = _to_pressure(packing, primitives, area, target_pressure, tolerance)
     # A region that is periodic in one direction has both: the outline is then one period of it.
     if outline is not None and not np.all(inside(outline, *packing.folded())):
-        raise InputError(
-            "the grains do not fit: lower the packing fraction or enlarge the container"
-        )
+        raise InputError(NO_ROOM)
     return packing
 
 
@@ -186,8 +189,9 @@ def _place(
     reach = 2.0 * float(radius.max(initial=1.0))
     columns = max(1, int((high[0] - low[0]) / reach))
     rows = max(1, int((high[1] - low[1]) / reach))
-    cells = np.full((columns * rows, 16), -1, dtype=np.int64)
-    filled = np.zeros(columns * rows, dtype=np.int64)
+    # The grains of a cell are a chain, the latest first: however many small ones lie where a large one would have room.
+    latest = np.full(columns * rows, -1, dtype=np.int64)
+    before = np.full(len(radius), -1, dtype=np.int64)
     x, y = np.zeros(len(radius)), np.zeros(len(radius))
     box_form = None if box is None else box.kernel_form()
     placed, tries = 0, 0
@@ -196,9 +200,7 @@ def _place(
         batch = max(1000, 4 * len(radius))
         tries += batch
         if tries > 4000 * len(radius) + 200_000:
-            raise InputError(
-                "the grains do not fit: lower the packing fraction or enlarge the container"
-            )
+            raise InputError(NO_ROOM)
         candidates = low + random.random((batch, 2)) * (high - low)
         if outline is not None:
             candidates = candidates[inside(outline, candidates[:, 0], candidates[:, 1])]
@@ -219,8 +221,8 @@ def _place(
             placed,
             candidates,
             primitives,
-            cells,
-            filled,
+            latest,
+            before,
             columns,
             rows,
             low,
@@ -239,8 +241,8 @@ def _add(
     placed,
     candidates,
     primitives,
-    cells,
-    filled,
+    latest,
+    before,
     columns,
     rows,
     low,
@@ -281,18 +283,18 @@ def _add(
                 near_row = (row + dr) % rows
                 near_column = (column + dc) % columns
                 cell = near_row * columns + near_column
-                for k in range(filled[cell]):
-                    j = cells[cell, k]
+                j = latest[cell]
+                while free and j >= 0:
                     dx, dy = nearest(px - x[j], py - y[j], box)
                     apart = radius[i] + radius[j]
-                    if dx * dx + dy * dy < apart * apart:
-                        free = False
-        cell = row * columns + column
-        if free and filled[cell] < cells.shape[1]:
+                    free = dx * dx + dy * dy >= apart * apart
+                    j = before[j]
+        if free:
             x[i] = px
             y[i] = py
-            cells[cell, filled[cell]] = i
-            filled[cell] += 1
+            cell = row * columns + column
+            before[i] = latest[cell]
+            latest[cell] = i
             placed += 1
     return placed
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core import generate, observables
@@ -211,3 +211,42 @@ def test_bodies_that_fill_the_container() -> None:
 def test_too_many_grains() -> None:
     with pytest.raises(InputError, match="do not fit"):
         pack(Recipe(), seed=1, outline=SQUARE, world=walled(SQUARE), count=800)
+
+
+@pytest.mark.parametrize("box", [None, PeriodicBox(22.0)], ids=["periodic", "walled"])
+def test_few_large_grains_among_many_small_ones(box: PeriodicBox | None) -> None:
+    """In the area of one large grain there is room for forty small ones and more, also where hardly any lie."""
+    recipe = Recipe(size_ratio=20.0, small_fraction=0.995)
+    outline: list[Point] | None = None
+    if box is not None:
+        outline = [(0.0, 0.0), (22.0, 0.0), (22.0, 22.0), (0.0, 22.0)]
+    packing = pack(recipe, seed=1, count=2000, packing_fraction=0.1, outline=outline, box=box)
+    assert len(packing) == 2000
+    assert np.sum(packing.rest_radius == 1.0) == 10
+    assert len(observables.grain_contacts(packing).i) == 0
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(0, 1000),
+    st.floats(1.0, 40.0),
+    st.floats(0.0, 1.0),
+    st.floats(0.02, generate.PLACED_FRACTION),
+    st.sampled_from([1.0, 0.3]),
+    st.integers(0, 99),
+)
+def test_any_mixture_is_placed(
+    count: int, ratio: float, small: float, fraction: float, flat: float, seed: int
+) -> None:
+    """No disc touches another, around the edges of the cell neither; all pairs are looked at here."""
+    recipe = Recipe(size_ratio=ratio, small_fraction=small)
+    random = np.random.default_rng(seed)
+    radius, _ = recipe.grains(count, random)
+    area = max(float(np.pi * np.sum(radius**2)) / fraction, (4.0 / flat) ** 2)
+    box = PeriodicBox(math.sqrt(area * flat), math.sqrt(area / flat))
+    x, y = generate._place(radius, None, RigidWorld(), box, random)
+    dx, dy = x[:, np.newaxis] - x, y[:, np.newaxis] - y
+    dx -= box.width * np.rint(dx / box.width)
+    dy -= box.height * np.rint(dy / box.height)
+    gap = np.hypot(dx, dy) - radius[:, np.newaxis] - radius
+    assert np.all(gap[~np.eye(count, dtype=bool)] >= 0.0)
