@@ -20,6 +20,7 @@ from core.threads import running, share
 DEFAULT_TOLERANCE = 1e-2
 DEFAULT_FORCE_FLOOR = 1e-3
 DEFAULT_SKIN = 0.3
+SKIN_SPAN = 4.0  # of the smallest radius, where that is less than the largest: else small grains list far too many neighbours
 
 
 class StopReason(StrEnum):
@@ -110,7 +111,7 @@ class Relaxation:
             force_floor=float(force_floor),
             dt_max=fire.DT_FACTOR / np.sqrt(stiffest),
             clamp=0.1 * smallest,
-            skin=skin * largest,
+            skin=skin * min(largest, SKIN_SPAN * smallest),
         )
         control = fire.fresh_control(self._limits.dt_max)
         if not count:
