@@ -40,7 +40,11 @@ KINDS = ("regular", "auxetic", "mixed")
 
 @dataclass(frozen=True)
 class Recipe:
-    """Which grains: kind of packing, sizes and material. Large grains have radius 1 [R]; each kind has its Poisson's ratio."""
+    """Which grains: kind of packing, sizes and material. Large grains have radius 1 [R]; each kind has its Poisson's ratio.
+
+    Sizes: large and small ones, ``size_ratio`` 1 for grains that are all alike; with ``size_width`` the radii of each of the two
+    are spread evenly, the largest of all having 1 [R].
+    """
 
     kind: str = "mixed"
     auxetic_fraction: float = 0.5  # of the grains, in a mixed packing
@@ -49,6 +53,7 @@ class Recipe:
     contact_stiffness: float = DEFAULT_CONTACT_STIFFNESS
     size_ratio: float = SIZE_RATIO  # large over small radius
     small_fraction: float = 0.5  # of the grains
+    size_width: float = 0.0  # radii of a size are spread from 1 − this to 1 of it
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -57,19 +62,31 @@ class Recipe:
             raise InputError("fractions of grains must lie between 0 and 1")
         if not self.size_ratio >= 1.0:
             raise InputError("the size ratio is large over small radius: it must be at least 1")
+        if not 0.0 <= self.size_width < 1.0:
+            raise InputError("the width of the sizes must be at least 0 and less than 1")
 
     def mean_area(self) -> float:
         """Mean rest area of a grain [R²]."""
-        return math.pi * (1.0 - self.small_fraction + self.small_fraction / self.size_ratio**2)
+        spread = 1.0 - self.size_width + self.size_width**2 / 3.0
+        area = math.pi * (1.0 - self.small_fraction + self.small_fraction / self.size_ratio**2)
+        return area * spread
+
+    @property
+    def smallest(self) -> float:
+        """Radius that no grain falls below [R]."""
+        return (1.0 - self.size_width) / (self.size_ratio if self.small_fraction > 0.0 else 1.0)
 
     def grains(self, count: int, random: np.random.Generator) -> tuple[Floats, Floats]:
         """Rest radii [R] and Poisson's ratios of ``count`` grains, (count,) each, in random order.
 
-        Numbers of each size, and of each kind within each size, are exact to one grain.
+        Numbers of each size, and of each kind within each size, are exact to one grain; so is how radii are spread.
         """
-        small = round(count * self.small_fraction)
+        small = round(count * self.small_fraction) if self.size_ratio > 1.0 else 0
         radius = np.ones(count)
         radius[:small] = 1.0 / self.size_ratio
+        if self.size_width > 0.0:
+            for size in (radius[:small], radius[small:]):
+                size *= 1.0 - self.size_width * (np.arange(len(size)) + 0.5) / max(len(size), 1)
         share = {"regular": 0.0, "auxetic": 1.0, "mixed": self.auxetic_fraction}[self.kind]
         # Counting up by ``share`` spreads the auxetic grains evenly over both sizes.
         steps = np.floor(np.arange(1, count + 1) * share + 1e-9) - np.floor(

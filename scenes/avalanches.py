@@ -18,6 +18,7 @@ from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     MATERIAL,
+    SIZES,
     SOLVER,
     STRONGEST,
     Check,
@@ -33,6 +34,7 @@ from scenes.scene import (
     hand,
     recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -63,6 +65,7 @@ class Avalanches(Scene):
         Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
         Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive", live=True),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
         # The shear stress is a small difference of large contact forces: at 1e-2 it is off by some per cent, and avalanches
         # come at the wrong strains. At 1e-3 one packing of four still took another way at once; 1e-4 costs 1.7 times as
@@ -77,7 +80,7 @@ class Avalanches(Scene):
     def steps(self, settings: Values) -> int:
         # The cell is not built yet; under little pressure its packing fraction is near that of jamming, 0.84.
         side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
-        return max(1, round(float(settings["strain"]) * side / float(settings["step"])))
+        return max(1, round(float(settings["strain"]) * side / step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

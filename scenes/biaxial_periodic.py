@@ -13,6 +13,7 @@ from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     MATERIAL,
+    SIZES,
     SOLVER,
     STRONGEST,
     Check,
@@ -28,6 +29,7 @@ from scenes.scene import (
     hand,
     recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -61,6 +63,7 @@ class BiaxialPeriodic(Scene):
             live=True,
         ),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
         *SOLVER,
     )
@@ -73,7 +76,7 @@ class BiaxialPeriodic(Scene):
         # The box at the onset is not built yet; frictionless discs jam at 0.84, and a step too many does no harm.
         side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
         shrink = side * (1.0 - math.sqrt(1.0 - float(settings["strain"])))
-        return max(1, math.ceil(shrink / float(settings["step"])))
+        return max(1, math.ceil(shrink / step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

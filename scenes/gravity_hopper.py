@@ -24,6 +24,7 @@ from scenes.registry import register
 from scenes.scene import (
     FRICTION,
     MATERIAL,
+    SIZES,
     SOLVER,
     STRONGEST,
     Check,
@@ -101,6 +102,7 @@ class GravityHopper(Scene):
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),

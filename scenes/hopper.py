@@ -17,6 +17,7 @@ from scenes.registry import register
 from scenes.scene import (
     FRICTION,
     MATERIAL,
+    SIZES,
     SOLVER,
     Handle,
     Holding,
@@ -31,6 +32,7 @@ from scenes.scene import (
     hand,
     recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -81,6 +83,7 @@ class Hopper(Scene):
         ),
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         hand(6.0),
+        *SIZES,
         *MATERIAL,
         *SOLVER,
     )
@@ -90,7 +93,7 @@ class Hopper(Scene):
 
     def steps(self, settings: Values) -> int:
         end = min(float(settings["stroke"]), Shape(settings).channel - 1.0)
-        return max(1, math.floor(end / float(settings["step"]) + 1e-6))
+        return max(1, math.floor(end / step(settings) + 1e-6))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

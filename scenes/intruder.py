@@ -13,6 +13,7 @@ from scenes.registry import register
 from scenes.scene import (
     FRICTION,
     MATERIAL,
+    SIZES,
     SOLVER,
     Handle,
     Latest,
@@ -24,6 +25,7 @@ from scenes.scene import (
     hand,
     recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -58,6 +60,7 @@ class Intruder(Scene):
         Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag", live=True),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         hand(0.6),
+        *SIZES,
         *MATERIAL,
         *SOLVER,
     )
@@ -68,9 +71,7 @@ class Intruder(Scene):
     def steps(self, settings: Values) -> int:
         radius = float(settings["intruder_radius"])
         room = self._box(settings)[0] - 2.0 * (radius + MARGIN)
-        return max(
-            1, math.floor(min(float(settings["stroke"]), room) / float(settings["step"]) + 1e-6)
-        )
+        return max(1, math.floor(min(float(settings["stroke"]), room) / step(settings) + 1e-6))
 
     @staticmethod
     def _box(settings: Values) -> tuple[float, float]:

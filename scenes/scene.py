@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
-from core.generate import KINDS, Progress, Recipe, inside
+from core.generate import KINDS, SIZE_RATIO, Progress, Recipe, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point
-from core.settings import MACHINE, Settings
+from core.settings import LONGEST_STEP, MACHINE, Settings
 from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
@@ -250,7 +250,7 @@ class Scene(ABC):
         if not changed.isdisjoint(p.name for p in SOLVER):
             setup.solver = replace(
                 setup.solver,
-                step=float(settings["step"]),
+                step=step(settings),
                 tolerance=float(settings["tolerance"]),
                 max_iterations=int(settings["max_iterations"]),
             )
@@ -261,7 +261,7 @@ class Scene(ABC):
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
         if "step" not in before:
             return increment
-        return math.ceil(increment * float(before["step"]) / float(after["step"]) - 1e-9)
+        return math.ceil(increment * step(before) / step(after) - 1e-9)
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
@@ -289,6 +289,33 @@ class Scene(ABC):
         return setup.outline
 
 
+# Large grains have the radius R. Unlike material, sizes are set when the grains are packed.
+SIZES = (
+    Parameter(
+        "size_ratio",
+        SIZE_RATIO,
+        "",
+        1.0,
+        10.0,
+        "radius of large over that of small grains; 1: all alike",
+    ),
+    Parameter(
+        "small_fraction",
+        0.5,
+        "",
+        0.0,
+        1.0,
+        "share of small grains, by number; without effect where size_ratio is 1",
+    ),
+    Parameter(
+        "size_width",
+        0.0,
+        "",
+        0.0,
+        0.5,
+        "spreads radii evenly, from 1 − size_width to 1 of the large and of the small radius; 0: not at all",
+    ),
+)
 MATERIAL = (
     Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
     Parameter(
@@ -342,7 +369,15 @@ FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leave
 # cheap, the scene says so (avalanches). Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a
 # measurement.
 SOLVER = (
-    Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment", live=True),
+    Parameter(
+        "step",
+        0.05,
+        "R",
+        0.002,
+        0.15,
+        "longest move of a body in one increment; never more than a quarter of the smallest radius",
+        live=True,
+    ),
     Parameter(
         "tolerance",
         1e-2,
@@ -372,13 +407,24 @@ def recipe(settings: Values, packing: str) -> Recipe:
         regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
         auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
         contact_stiffness=float(settings["contact_stiffness"]),
+        size_ratio=float(settings["size_ratio"]),
+        small_fraction=float(settings["small_fraction"]),
+        size_width=float(settings["size_width"]),
     )
+
+
+def step(settings: Values) -> float:
+    """How far a body moves in one increment at most [R]: as asked, but no further than the smallest grain allows."""
+    asked = float(settings["step"])
+    if "size_ratio" not in settings:
+        return asked
+    return min(asked, LONGEST_STEP * recipe(settings, "mixed").smallest)
 
 
 def solver(settings: Values) -> Settings:
     """How carefully ``settings`` ask to relax."""
     return Settings(
-        step=float(settings["step"]),
+        step=step(settings),
         tolerance=float(settings["tolerance"]),
         max_iterations=int(settings["max_iterations"]),
         hand_strength=hand_strength(settings),

@@ -74,6 +74,14 @@ def poisson_ratio(settings: Values, kind: str) -> float:
     return float(settings.get("regular_poisson_ratio", DEFAULT_POISSON_RATIO))
 
 
+def radii(settings: Values) -> tuple[float, float]:
+    """Radius of a large and of a small grain [R] that are placed in a scene with these settings: of sizes that it has."""
+    middle = 1.0 - 0.5 * float(settings.get("size_width", 0.0))
+    small_fraction = float(settings.get("small_fraction", 0.5))
+    large, small = middle, middle / float(settings.get("size_ratio", SIZE_RATIO))
+    return large if small_fraction < 1.0 else small, small if small_fraction > 0.0 else large
+
+
 # Grains
 
 
@@ -90,8 +98,8 @@ def _place(setup: Setup, settings: Values, at: Point, kind: str, label: int) -> 
     if room.from_bodies(setup, here)[0] <= 0.0:
         raise InputError("there is a wall or another body here: no room for a grain")
     # Large and small ones in turn; where only the other size fits, that one.
-    sizes = (1.0, 1.0 / SIZE_RATIO) if label % 2 == 0 else (1.0 / SIZE_RATIO, 1.0)
-    for radius in sizes:
+    large, small = radii(settings)
+    for radius in (large, small) if label % 2 == 0 else (small, large):
         place, free = _best_place(setup, at, radius)
         if free >= LEAST * radius:
             break

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -59,6 +60,30 @@ def test_mean_area_is_that_of_the_grains() -> None:
     recipe = Recipe(small_fraction=0.25, size_ratio=2.0)
     radius, _ = recipe.grains(400, np.random.default_rng(1))
     assert np.pi * np.mean(radius**2) == pytest.approx(recipe.mean_area())
+
+
+@given(st.integers(1, 300), st.floats(0.0, 1.0), st.floats(1.0, 5.0), st.floats(0.0, 0.9))
+def test_radii_are_spread_evenly(count: int, small: float, ratio: float, width: float) -> None:
+    """Each size from 1 − width to 1 of it, without a random number: the area is that of the even spread."""
+    recipe = Recipe(small_fraction=small, size_ratio=ratio, size_width=width)
+    radius, nu = recipe.grains(count, np.random.default_rng(1))
+    plain, same_nu = replace(recipe, size_width=0.0).grains(count, np.random.default_rng(1))
+    assert np.array_equal(nu, same_nu)
+    share = radius / plain
+    assert np.all((share > 1.0 - width - 1e-12) & (share <= 1.0))
+    assert np.all(radius >= recipe.smallest * (1.0 - 1e-12))
+    for size in np.unique(plain):
+        found = np.sort(share[plain == size])
+        gap = width / len(found)
+        assert np.diff(found) == pytest.approx(np.full(len(found) - 1, gap), abs=1e-9)
+        assert found[-1] == pytest.approx(1.0 - 0.5 * gap)
+    few = round(count * small) if ratio > 1.0 else 0
+    kinds = [few, count - few]
+    numbers = Recipe(small_fraction=kinds[0] / count, size_ratio=ratio, size_width=width)
+    fewest = min((k for k in kinds if k), default=1)
+    assert np.pi * np.mean(radius**2) == pytest.approx(
+        numbers.mean_area(), rel=width**2 / (1.0 - width) / fewest**2 + 1e-12
+    )
 
 
 @pytest.mark.parametrize("kind", generate.KINDS)
@@ -193,6 +218,8 @@ def test_impossible_requests(request_: dict[str, object], message: str) -> None:
         {"auxetic_fraction": math.nan},
         {"regular_poisson_ratio": 1.0},
         {"contact_stiffness": 2.0},
+        {"size_width": 1.0},
+        {"size_width": -0.1},
     ],
 )
 def test_impossible_recipes(recipe: dict[str, object]) -> None:
