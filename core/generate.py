@@ -51,6 +51,7 @@ class Recipe:
     regular_poisson_ratio: float = DEFAULT_POISSON_RATIO
     auxetic_poisson_ratio: float = -DEFAULT_POISSON_RATIO
     contact_stiffness: float = DEFAULT_CONTACT_STIFFNESS
+    auxetic_contact_stiffness: float | None = None  # None: as that of the regular ones
     size_ratio: float = SIZE_RATIO  # large over small radius
     small_fraction: float = 0.5  # of the grains
     size_width: float = 0.0  # radii of a size are spread from 1 − this to 1 of it
@@ -64,6 +65,12 @@ class Recipe:
             raise InputError("the size ratio is large over small radius: it must be at least 1")
         if not 0.0 <= self.size_width < 1.0:
             raise InputError("the width of the sizes must be at least 0 and less than 1")
+
+    def stiffness(self, poisson_ratio: Floats) -> Floats:
+        """Contact stiffness [k] of grains (N,), whose kind is the sign of Poisson's ratio."""
+        other = self.auxetic_contact_stiffness
+        auxetic = self.contact_stiffness if other is None else other
+        return np.where(np.signbit(poisson_ratio), auxetic, self.contact_stiffness)
 
     def mean_area(self) -> float:
         """Mean rest area of a grain [R²]."""
@@ -147,7 +154,7 @@ def pack(
         raise InputError(NO_ROOM)
     scale = min(1.0, math.sqrt(PLACED_FRACTION / max(fraction, 1e-9)))
     x, y = _place(radius * scale, outline, world, box, random)
-    packing = Packing(x, y, radius, nu, recipe.contact_stiffness, box=box)
+    packing = Packing(x, y, radius, nu, recipe.stiffness(nu), box=box)
     primitives, _ = world.primitives()
     _grow(packing, primitives, scale, tolerance, progress)
     if target_pressure is not None:

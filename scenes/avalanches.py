@@ -14,11 +14,10 @@ from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
-    MATERIAL,
-    SIZES,
     SOLVER,
     STRONGEST,
     Check,
@@ -32,7 +31,6 @@ from scenes.scene import (
     Track,
     Values,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -67,6 +65,7 @@ class Avalanches(Scene):
         hand(STRONGEST),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         # The shear stress is a small difference of large contact forces: at 1e-2 it is off by some per cent, and avalanches
         # come at the wrong strains. At 1e-3 one packing of four still took another way at once; 1e-4 costs 1.7 times as
         # much, less than a picture (`study accuracy`).

@@ -16,12 +16,11 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
-    SIZES,
     SOLVER,
     Check,
     Curve,
@@ -32,7 +31,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -71,6 +69,7 @@ class BiaxialPress(Scene):
         hand(40.0),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 

@@ -12,12 +12,11 @@ from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
-    SIZES,
     SOLVER,
     STRONGEST,
     Check,
@@ -32,7 +31,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -97,6 +95,7 @@ class Couette(Scene):
         hand(STRONGEST),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 

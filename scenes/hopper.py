@@ -12,12 +12,11 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
-    SIZES,
     SOLVER,
     Handle,
     Holding,
@@ -30,7 +29,6 @@ from scenes.scene import (
     below_height,
     friction,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -85,6 +83,7 @@ class Hopper(Scene):
         hand(6.0),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 

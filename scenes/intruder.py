@@ -8,12 +8,11 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
-    SIZES,
     SOLVER,
     Handle,
     Latest,
@@ -23,7 +22,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -62,6 +60,7 @@ class Intruder(Scene):
         hand(0.6),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
-from core.generate import KINDS, SIZE_RATIO, Progress, Recipe, inside
+from core.generate import KINDS, Progress, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point
@@ -25,6 +25,7 @@ from core.settings import LONGEST_STEP, MACHINE, Settings
 from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
+from scenes.grains import KINDS_OF_GRAINS, STIFFNESSES, check_material, material, recipe
 from scenes.parameter import Parameter, Value
 from scenes.text import Text
 
@@ -200,6 +201,7 @@ class Scene(ABC):
             settings[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
             )
+        check_material(settings)
         self.validate(settings)
         return settings
 
@@ -238,13 +240,17 @@ class Scene(ABC):
         Arrays of the packing are replaced, never written into.
         """
         packing = setup.packing
-        for name, kind in (("regular_poisson_ratio", False), ("auxetic_poisson_ratio", True)):
-            if name in changed:
-                of_kind = np.signbit(packing.poisson_ratio) == kind
-                new = np.where(of_kind, float(settings[name]), packing.poisson_ratio)
-                packing.poisson_ratio = new
-        if "contact_stiffness" in changed:
-            packing.contact_stiffness = np.full(len(packing), float(settings["contact_stiffness"]))
+        stiffness_changed = not changed.isdisjoint(STIFFNESSES)
+        for kind in KINDS_OF_GRAINS:
+            ratio_changed = not changed.isdisjoint((f"{kind}_poisson_ratio", "stiffness_ratio"))
+            if not (ratio_changed or stiffness_changed):
+                continue
+            nu, stiffness = material(settings, kind)
+            of_kind = np.signbit(packing.poisson_ratio) == (kind == "auxetic")
+            if ratio_changed:
+                packing.poisson_ratio = np.where(of_kind, nu, packing.poisson_ratio)
+            if stiffness_changed or float(settings.get("softness", 0.0)) > 0.0:
+                packing.contact_stiffness = np.where(of_kind, stiffness, packing.contact_stiffness)
         if "friction" in changed:
             setup.rub(float(settings["friction"]))
         if not changed.isdisjoint(p.name for p in SOLVER):
@@ -289,57 +295,6 @@ class Scene(ABC):
         return setup.outline
 
 
-# Large grains have the radius R. Unlike material, sizes are set when the grains are packed.
-SIZES = (
-    Parameter(
-        "size_ratio",
-        SIZE_RATIO,
-        "",
-        1.0,
-        10.0,
-        "radius of large over that of small grains; 1: all alike",
-    ),
-    Parameter(
-        "small_fraction",
-        0.5,
-        "",
-        0.0,
-        1.0,
-        "share of small grains, by number; without effect where size_ratio is 1",
-    ),
-    Parameter(
-        "size_width",
-        0.0,
-        "",
-        0.0,
-        0.5,
-        "spreads radii evenly, from 1 − size_width to 1 of the large and of the small radius; 0: not at all",
-    ),
-)
-MATERIAL = (
-    Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
-    Parameter(
-        "regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains", live=True
-    ),
-    Parameter(
-        "auxetic_poisson_ratio",
-        -0.8,
-        "",
-        -0.99,
-        -0.01,
-        "Poisson's ratio of auxetic grains",
-        live=True,
-    ),
-    Parameter(
-        "contact_stiffness",
-        50.0,
-        "k",
-        5.0,
-        1000.0,
-        "stiffness of a contact over that of a grain: higher is harder and slower",
-        live=True,
-    ),
-)
 HAND_STRENGTH = "hand_strength"
 STRONGEST = 1000.0  # [k R] stands for a testing machine
 BY_MACHINE = (HAND_STRENGTH, STRONGEST)  # what a protocol sets that is driven wherever it wants
@@ -397,20 +352,6 @@ SOLVER = (
         live=True,
     ),
 )
-
-
-def recipe(settings: Values, packing: str) -> Recipe:
-    """The grains that ``settings`` and the kind of packing ask for."""
-    return Recipe(
-        kind=packing,
-        auxetic_fraction=float(settings["auxetic_fraction"]),
-        regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
-        auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
-        contact_stiffness=float(settings["contact_stiffness"]),
-        size_ratio=float(settings["size_ratio"]),
-        small_fraction=float(settings["small_fraction"]),
-        size_width=float(settings["size_width"]),
-    )
 
 
 def step(settings: Values) -> float:

@@ -7,12 +7,11 @@ import math
 from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
-    SIZES,
     SOLVER,
     Handle,
     Scene,
@@ -20,7 +19,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
     step,
 )
@@ -49,6 +47,7 @@ class Workshop(Scene):
         hand(0.6),
         *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 

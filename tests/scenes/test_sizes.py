@@ -16,7 +16,8 @@ from sandbox.session.editing import radii
 from sandbox.session.replay import replay
 from sandbox.session.session import Session
 from scenes import registry
-from scenes.scene import HAND_STRENGTH, SIZES, STRONGEST, recipe, step
+from scenes.grains import SIZES, recipe
+from scenes.scene import HAND_STRENGTH, STRONGEST, step
 from tests.scenes.test_registry import small
 
 BULK = [
@@ -57,8 +58,7 @@ def test_all_scenes_that_pack_have_them() -> None:
         own = {p.name: p for p in registry.get(name).parameters}
         assert all(own[p.name] is p for p in SIZES)
         settings = registry.get(name).settings()
-        plain, found = Recipe(), recipe(settings, "mixed")
-        assert found == plain
+        assert recipe(settings, "mixed") == Recipe(auxetic_contact_stiffness=50.0)
         assert step(settings) == settings["step"]
 
 

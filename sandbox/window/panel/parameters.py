@@ -26,6 +26,8 @@ GRAINS = (
     "auxetic_fraction",
     "friction",
     "contact_stiffness",
+    "stiffness_ratio",
+    "softness",
     "size_ratio",
     "small_fraction",
     "size_width",
