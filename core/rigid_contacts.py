@@ -173,7 +173,7 @@ def touch(primitives, m, x, y, s, u, v):
 def image(primitives, m, x, y, box):
     """The periodic image of a grain at (x, y) that is nearest to primitive m (for an edge: to its middle) [R].
 
-    A wall that runs along a periodic direction must reach beyond the cell by a grain's radius at both ends.
+    Of walls that run around the cell ``endless`` makes what lies beside that image.
     """
     if box is None:
         return x, y

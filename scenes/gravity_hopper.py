@@ -18,12 +18,12 @@ from core.packing import Packing
 from core.quasistatic import Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.hopper import WALL, Shape, standing_arch
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     STRONGEST,
     Check,
@@ -38,7 +38,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
 )
 from scenes.text import Text
@@ -101,7 +100,9 @@ class GravityHopper(Scene):
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
     )
