@@ -39,7 +39,7 @@ SIZES = (
         "",
         0.0,
         1.0,
-        "share of small grains, by number; without effect where size_ratio is 1",
+        "share of small grains, by number; without effect if all are alike",
     ),
     Parameter(
         "size_width",
@@ -47,7 +47,7 @@ SIZES = (
         "",
         0.0,
         0.5,
-        "spreads radii evenly, from 1 − size_width to 1 of the large and of the small radius; 0: not at all",
+        "share by which radii of a size are spread, evenly, below the largest; 0: all of a size alike",
     ),
 )
 MATERIAL = (
@@ -91,7 +91,7 @@ PAPER = (
         "",
         0.0,
         1.0,
-        "μ of the paper, in place of contact_stiffness: grain over contact stiffness (paper: 0.1); 0: not used",
+        "μ of the paper, in place of the contact stiffness: grain over contact stiffness (paper: 0.1); 0: not used",
         live=True,
     ),
 )
