@@ -80,7 +80,7 @@ class Hopper(Scene):
             "stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke", live=True
         ),
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
-        hand(6.0),
+        hand(8.0),
         *SIZES,
         *MATERIAL,
         *PAPER,
