@@ -147,8 +147,11 @@ def _judge_silo(rows: Sequence[Row]) -> list[Check]:
 
 FRICTIONS = (0.0, 0.2, 0.5)
 BED_SEEDS = 12
-ACROSS, QUICK_ACROSS = 32.0, 16.0  # [R] of a period of the bed
-DEEP, QUICK_DEEP = 20.0, 8.0  # [R]
+BEDS = (
+    (64.0, 40.0),
+    (32.0, 20.0),
+)  # [R] a period of the bed, and how deep it is; the first one is judged
+QUICK_BED = (16.0, 8.0)
 FALL = 0.25  # [R] of a free grain in an increment
 TURN = 1.0  # [deg] from one tilt to the next
 STEEPEST = 45.0  # [deg]
@@ -209,16 +212,17 @@ def _flows(bed: Quasistatic, tilt: float, check: Asking) -> bool:
 
 
 def _judge_bed(rows: Sequence[Row]) -> list[Check]:
-    rough, some, smooth = (where(rows, friction=mu) for mu in reversed(FRICTIONS))
+    widths = sorted({row.job.of("width") for row in rows}, reverse=True)
+    rough, some, smooth = (where(rows, friction=mu, width=widths[0]) for mu in reversed(FRICTIONS))
     judging = seeds_of(rows)
-    return [
+    checks = [
         Check(
             "angle of repose, where a flowing bed of μ = 0.5 stops [deg]",
             Student.mean([row["stop"] for row in rough]),
-            "15",
-            Demand(11.0, 20.0),
-            "beds of 4000 discs, 35 diameters deep, stop at 15° and begin at 21° (Deboeuf et al.); this one is ten deep, turned by "
-            "whole degrees, and without inertia stops where it could also begin",
+            "15 to 21",
+            Demand(12.0, 24.0),
+            "beds of 4000 discs, 35 diameters deep, begin at 21° and stop at 15° (Deboeuf et al.); without inertia there is one "
+            "angle in between; three degrees for the turning by whole ones and for a bed of a quarter of the size",
             judging,
         ),
         Check(
@@ -246,37 +250,19 @@ def _judge_bed(rows: Sequence[Row]) -> list[Check]:
             judging,
         ),
     ]
-
-
-def _judge_bed(rows: Sequence[Row]) -> list[Check]:
-    rough, some, smooth = (where(rows, friction=mu) for mu in reversed(FRICTIONS))
-    judging = seeds_of(rows)
-    return [
-        Check(
-            "tilt at which a bed of μ = 0.5 begins to flow [deg]",
-            Student.mean([row["tilt"] for row in rough]),
-            "21 (and flows on down to 15)",
-            Demand(15.0, 27.0),
-            "beds of 4000 discs, 35 diameters deep, begin at 21° ± 1°; this one is ten diameters deep, and thin beds stand steeper",
-            judging,
-        ),
-        Check(
-            "the same, μ = 0 [deg]",
-            Student.mean([row["tilt"] for row in smooth]),
-            "below 10",
-            Demand(high=10.0),
-            "discs without friction flow at tan⁻¹ 0.11 = 6.3° (da Cruz et al.), and a thin bed stands a little steeper",
-            judging,
-        ),
-        Check(
-            "μ = 0.5 less μ = 0.2 [deg]",
-            Student.mean([a["tilt"] - b["tilt"] for a, b in zip(rough, some, strict=True)]),
-            "above 0: the rougher, the steeper",
-            Demand(0.0),
-            "a direction",
-            judging,
-        ),
-    ]
+    for mu in FRICTIONS if len(widths) > 1 else ():
+        large, small = (where(rows, friction=mu, width=width) for width in widths[:2])
+        checks.append(
+            Check(
+                f"a bed of half the size less the whole one, μ = {mu:g} [deg]",
+                Student.mean([b["stop"] - a["stop"] for a, b in zip(large, small, strict=True)]),
+                "above 0: small beds find a hold more easily",
+                Demand(0.0),
+                "a direction: which way larger beds would go",
+                judging,
+            )
+        )
+    return checks
 
 
 CASES = (
@@ -296,19 +282,12 @@ CASES = (
     Case(
         "repose",
         "Angle of repose",
-        "beds of discs with μ = 0.5 that are tilted slowly: Staron, Vilotte and Radjai, doi:10.1103/PhysRevLett.89.204302; Deboeuf, "
-        "Vilotte, Mangeney, Staron and Dauchot, doi:10.1201/NOE0415383486-27. Without friction: da Cruz, Emam, Prochnow, Roux "
-        "and Chevoir, doi:10.1103/PhysRevE.72.021309",
+        "beds of discs with μ = 0.5 that are tilted slowly: Staron, Vilotte and Radjai, doi:10.1103/PhysRevLett.89.204302; "
+        "Deboeuf, Vilotte, Mangeney, Staron and Dauchot, doi:10.1201/NOE0415383486-27. Without friction: da Cruz, Emam, "
+        "Prochnow, Roux and Chevoir, doi:10.1103/PhysRevE.72.021309",
         lambda quick: [
-            Job(
-                "repose",
-                (
-                    ("friction", mu),
-                    ("width", QUICK_ACROSS if quick else ACROSS),
-                    ("depth", QUICK_DEEP if quick else DEEP),
-                ),
-                seed,
-            )
+            Job("repose", (("friction", mu), ("width", width), ("depth", depth)), seed)
+            for width, depth in ((QUICK_BED,) if quick else BEDS)
             for mu in FRICTIONS
             for seed in seeds(BED_SEEDS, quick)
         ],

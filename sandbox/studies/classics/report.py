@@ -36,7 +36,8 @@ def as_markdown(
             f"From `python -m sandbox study classics --out DIR{quick}`: textbook and published cases, {len(verdicts)} numbers: "
             f"{told}. {len(rows)} runs, {len(failures) or 'none'} failed; "
             f"{sum(row.seconds for row in rows) / 60.0:.1f} minutes of one core. Intervals are {CONFIDENCE:.0%} each; a verdict "
-            f"takes a p-value below {1.0 - CONFIDENCE:.2f} after Holm's correction over the {chance} numbers that are a matter of chance. Seeds from {FIRST} on judge; protocols were tried on seeds "
+            f"takes a p-value below {1.0 - CONFIDENCE:.2f} after Holm's correction over the {chance} numbers that are a matter "
+            f"of chance. Seeds from {FIRST} on judge; protocols were tried on seeds "
             "below. Lengths in R, forces in k R. One row a run: [runs.csv](runs.csv)."
         ),
     ]

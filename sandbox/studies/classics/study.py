@@ -135,13 +135,12 @@ def _run(
 
 def _compile() -> None:
     """Every sort of kernels that the cases use, once."""
-    for terms in (
-        {"rigid": True},
-        {"periodic": True},
-        {"rigid": True, "friction": True},
-        {"rigid": True, "friction": True, "gravity": True},
-        {"rigid": True, "periodic": True, "friction": True, "gravity": True},
+    for periodic, rigid, friction, gravity in (
+        (False, True, False, False),
+        (True, False, False, False),
+        (False, True, True, False),
+        (False, True, True, True),
+        (True, True, False, True),
+        (True, True, True, True),
     ):
-        compile_kernels(
-            **{"periodic": False, "rigid": False, "friction": False, "gravity": False, **terms}
-        )
+        compile_kernels(periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)

@@ -463,8 +463,10 @@ def yield_panels(results: Sequence[Result]) -> list[Panel]:
     densest = _fractions(rows)[-1]
     for lam in lambdas(rows):
         mine = where(of_lam(rows, lam), packing_fraction=densest)
-        first = min(mine, key=lambda result: result.request.seed)
-        curves.append(Line(label(lam), colour(lam), first.column("stroke"), first.column("force")))
+        if mine:
+            first = min(mine, key=lambda result: result.request.seed)
+            line = Line(label(lam), colour(lam), first.column("stroke"), first.column("force"))
+            curves.append(line)
         ratios.append(Line(label(lam), colour(lam), *_means(rows, lam, friction), points=True))
     return [
         *_against(results, yielding, "yield stress [k]"),
