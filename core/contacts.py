@@ -17,12 +17,11 @@ from __future__ import annotations
 
 import math
 
-from core.jit import kernel
-from core.periodic import nearest
+import numpy as np
 
-COINCIDENT = (
-    1e-290  # [R²] keeps 1/r finite for coincident centres; far below rounding for all others
-)
+from core.jit import kernel
+from core.periodic import COINCIDENT, nearest
+from core.slip import TANGENTIAL_STIFFNESS, TOUCHED, pair_slip
 
 
 @kernel(noalias=True)
@@ -43,10 +42,42 @@ def prepare(p, q1, q2, s, u, v, fx, fy, a, b, d):
 
 
 @kernel(noalias=True)
-def slot_forces(neighbor, stiffness, xs, ys, ss, us, vs, x, y, s, u, v, fx, fy, a, b, d, box):
+def slot_forces(
+    neighbor,
+    stiffness,
+    xs,
+    ys,
+    ss,
+    us,
+    vs,
+    x,
+    y,
+    s,
+    u,
+    v,
+    fx,
+    fy,
+    a,
+    b,
+    d,
+    box,
+    begin,
+    first,
+    state,
+    coefficient,
+    change,
+    marks,
+    m11,
+    m12,
+    m21,
+    m22,
+    deep,
+):
     """Add the contacts of n grains in one slot; return their energy.
 
     ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,). xs … vs and fx … d (n,) are of these grains, x … v (N,) of all.
+    With friction ``state`` (6, N) and the rest are as in ``FrictionTerms``, ``begin`` is the place of the first of the grains and
+    ``first`` of their first entry; without it all seven are None, and no code for it exists.
     Where two centres coincide the direction is undefined: the pair then has an energy but no force, and nothing becomes nan.
     """
     energy = 0.0
@@ -55,8 +86,15 @@ def slot_forces(neighbor, stiffness, xs, ys, ss, us, vs, x, y, s, u, v, fx, fy, 
         dx, dy = nearest(x[j] - xs[i], y[j] - ys[i], box)
         ui = us[i]
         vi = vs[i]
-        uj = u[j]
-        vj = v[j]
+        if marks is None:
+            sj = s[j]
+            uj = u[j]
+            vj = v[j]
+        else:  # shapes are needed themselves, and cost less than more values from scattered places
+            pj, q1j, q2j = state[2, j], state[3, j], state[4, j]
+            sj = pj * pj + q1j * q1j + q2j * q2j
+            uj = 2.0 * pj * q1j
+            vj = 2.0 * pj * q2j
         # Roots and divisions set the pace: three of the one, two of the other, as few as possible after another.
         r2 = dx * dx + dy * dy + COINCIDENT
         r = math.sqrt(r2)
@@ -65,17 +103,67 @@ def slot_forces(neighbor, stiffness, xs, ys, ss, us, vs, x, y, s, u, v, fx, fy, 
         c2 = (dx * dx - dy * dy) * inverse2
         s2 = 2.0 * dx * dy * inverse2
         hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
-        hj = math.sqrt(s[j] + uj * c2 + vj * s2)
-        both = 1.0 / (hi * hj)
-        inverse_hi = hj * both
-        inverse_hj = hi * both
+        hj = math.sqrt(sj + uj * c2 + vj * s2)
         overlap = hi + hj - r
         # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
         overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
+        if marks is None:
+            both = 1.0 / (hi * hj)
+        else:
+            e = np.uint64(first + i)
+            reached = overlap + marks[1, e] + TOUCHED
+            both = 1.0 / (hi * hj * reached)
+            touched = (overlap + TOUCHED) * hi * hj * both
+            both *= reached
+        inverse_hi = hj * both
+        inverse_hj = hi * both
         f = stiffness[i] * overlap
         energy += 0.25 * f * overlap  # each pair is met twice
         fi = f * inverse_hi
         fj = f * inverse_hj
+        if marks is not None:
+            # Unsigned, as an index that might be negative would have to be asked each time.
+            k = np.uint64(begin + i)
+            nx = dx * inverse
+            ny = dy * inverse
+            exi = ((state[2, k] + state[3, k]) * nx + state[4, k] * ny) * inverse_hi
+            eyi = (state[4, k] * nx + (state[2, k] - state[3, k]) * ny) * inverse_hi
+            slip = pair_slip(
+                nx,
+                ny,
+                dx - marks[2, e],
+                dy - marks[3, e],
+                overlap,
+                touched,
+                marks[0, e],
+                exi,
+                eyi,
+                change[0, k],
+                change[1, k],
+                change[2, k],
+                change[3, k],
+                change[4, k],
+                ((pj + q1j) * nx + q2j * ny) * inverse_hj,
+                (q2j * nx + (pj - q1j) * ny) * inverse_hj,
+                change[0, j],
+                change[1, j],
+                change[2, j],
+                change[3, j],
+                change[4, j],
+            )
+            limit = coefficient * overlap / TANGENTIAL_STIFFNESS
+            slip = max(min(slip, limit), -limit)
+            pull = TANGENTIAL_STIFFNESS * stiffness[i] * slip
+            energy += 0.25 * pull * slip
+            along_x = pull * ny  # − pull t
+            along_y = -pull * nx
+            fx[i] += along_x
+            fy[i] += along_y
+            m11[i] += along_x * exi
+            m12[i] += along_x * eyi
+            m21[i] += along_y * exi
+            m22[i] += along_y * eyi
+            deep[i] += 0.5 * pull * overlap
         turn = (fi * (vi * c2 - ui * s2) + fj * (vj * c2 - uj * s2)) * inverse2
         f *= inverse
         fx[i] -= f * dx + turn * dy
@@ -105,9 +193,18 @@ def slot_force_sum(neighbor, stiffness, x, y, s, u, v, box):
 
 
 @kernel
-def add_contact_forces(begin, end, state, support, force, width, offset, neighbor, stiffness, box):
-    """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²]."""
+def add_contact_forces(
+    begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
+):
+    """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²].
+
+    What friction does to shapes and spins goes to ``friction.sums``, since rows 2–4 hold contact sums.
+    """
     energy = 0.0
+    coefficient = None if friction is None else friction.coefficient
+    change = None if friction is None else friction.change
+    marks = None if friction is None else friction.marks
+    sums = None if friction is None else friction.sums
     for t in range(width.shape[0]):
         last = min(width[t], end)
         if last <= begin:
@@ -132,6 +229,17 @@ def add_contact_forces(begin, end, state, support, force, width, offset, neighbo
             force[3, begin:last],
             force[4, begin:last],
             box,
+            begin,
+            first + begin,
+            state,
+            coefficient,
+            change,
+            marks,
+            None if friction is None else sums[0, begin:last],
+            None if friction is None else sums[1, begin:last],
+            None if friction is None else sums[2, begin:last],
+            None if friction is None else sums[3, begin:last],
+            None if friction is None else sums[4, begin:last],
         )
     return energy
 

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from core import sweeps, threads
 from core.contacts import prepare, slot_force_sum
-from core.friction import add_friction_forces, settle_places
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
 from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
+from core.slip import prepare_friction
 from core.steering import ALPHA_START, DT_START, steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
@@ -120,7 +120,7 @@ def fresh_control(dt_max: float) -> NDArray[np.void]:
 
 
 @kernel
-def relist(m, box, rigid, friction, skin):
+def relist(m, box, rigid, skin):
     """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
 
     A kernel of its own, called between slices of ``run``: lists are rebuilt hundreds of times less often than forces.
@@ -138,8 +138,6 @@ def relist(m, box, rigid, friction, skin):
     permute(m.grains.area_stiffness, order, m.scratch)
     permute(m.grains.shape_stiffness, order, m.scratch)
     permute(m.identity, order, m.scratch_identity)
-    if friction is not None:
-        settle_places(m.identity, friction)
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
         return RIGID_FULL
     m.reference[:] = m.state
@@ -185,17 +183,18 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             force[3],
             force[4],
         )
+        if friction is not None:
+            prepare_friction(0, state.shape[1], state, friction)
     energy = 0.0
     if rigid is not None:
-        energy += add_rigid_forces(state, support, grains.contact_stiffness, force, rigid, box)
+        energy += add_rigid_forces(
+            state, support, grains.contact_stiffness, force, rigid, box, friction
+        )
     if gravity is not None:
         energy += add_weight(
             state[0], state[1], grains.rest_area, m.identity, force[0], force[1], gravity
         )
-    if friction is not None:
-        force[5] = 0.0
-        energy += add_friction_forces(state, force, friction)
-    # Last, since it turns the contact sums into forces.
+    # It turns the contact sums into forces.
     if shared is None:
         own = sweeps.all_forces(
             state,
@@ -209,6 +208,7 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             grains.area_stiffness,
             grains.shape_stiffness,
             box,
+            friction,
         )
     else:
         own = threads.all_forces(
@@ -223,6 +223,7 @@ def evaluate(m, box, rigid, friction, gravity, shared):
             grains.area_stiffness,
             grains.shape_stiffness,
             box,
+            friction,
             shared.sums,
         )
     return add(energy, own)
@@ -297,7 +298,7 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
             if shared is None:
                 drift(state, velocity, step)
             else:
-                threads.move(m.state, m.velocity, step, m.support, m.force)
+                threads.move(m.state, m.velocity, step, m.support, m.force, friction)
             # 4 × the largest change of any degree of freedom bounds displacement plus growth of one grain.
             control.moved += 4.0 * step * fastest
             if not control.moved <= 0.5 * limits.skin:
@@ -308,7 +309,7 @@ def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
             control.pending = True  # the step is made; its forces wait for the new lists
             return LISTS_STALE, iteration
         if shared is not None and control.pending:
-            threads.move(m.state, m.velocity, 0.0, m.support, m.force)
+            threads.move(m.state, m.velocity, 0.0, m.support, m.force, friction)
         control.pending = False
         control.energy = evaluate(m, box, rigid, friction, gravity, shared)
         if np.isnan(control.start_energy):

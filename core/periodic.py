@@ -6,6 +6,9 @@ import numpy as np
 
 from core.jit import kernel
 
+# [R²] keeps 1/r finite for coincident centres; far below rounding for all others
+COINCIDENT = 1e-290
+
 
 @kernel
 def nearest(dx, dy, box):

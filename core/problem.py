@@ -77,7 +77,7 @@ class Problem:
             minimizer,
             relaxation._box,
             relaxation._rigid,
-            relaxation._friction,
+            relaxation.friction_terms,
             relaxation._weight,
             None,
         )

@@ -19,7 +19,8 @@ from core.arrays import Floats
 from core.coincidence import part_coincident
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
-from core.friction import Friction, FrictionForces, FrozenContacts
+from core.friction import Friction
+from core.frictional_contacts import FrictionForces
 from core.hand import CELL, Push, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
@@ -56,7 +57,6 @@ class Quasistatic:
         packing, world = system.packing, system.world
         self.reactions = np.zeros((len(world.bodies), 3))
         self.latest: Increment | None = None  # as it ended
-        self._frozen: FrozenContacts | None = None
         self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
@@ -124,7 +124,7 @@ class Quasistatic:
         self._last_moved = dict(state.last_moved)
         system.friction = None if state.friction is None else state.friction.copy()
         system.solver, system.gravity, system.drag = state.solver, state.gravity, state.drag
-        self._frozen = self._relaxation = None
+        self._relaxation = None
         self._contacts = self.contacts()
 
     def look_again(self) -> None:
@@ -132,8 +132,6 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("nothing can be changed in the middle of an increment")
         self._check()
-        if self.friction is None:
-            self._frozen = None
         self._contacts = self.contacts()
 
     def _check(self) -> None:
@@ -170,29 +168,33 @@ class Quasistatic:
             touched = (self._contacts or self.contacts())[1]
             self._deep = deep_grains(self.packing, touched, self.system.solver.step)
         self._placement = self.world.placement()
-        rows_then = self.world.primitives()[0]
+        rows_then, owner = self.world.primitives()
         self._move_bodies(targets)
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
+        origin = None
+        if self.friction is not None:
+            ways = self._placement, self.world.placement()
+            origin = self.friction.begin(self.packing, rows_then, owner, *ways)
         if self.system.follow is not None:
             self.system.follow(self.packing, self.world)
         stepped = self._box_towards(box, self._push.share * self.system.solver.step)
         if box is not None and self._push.share < 1.0:
             self._stopped[CELL] = "force limit"
-        self._freeze_friction(stepped)
         self._squeeze(stepped)
         self._carried = self.packing.state[:2].copy()
         if self.system.relaxes and self.system.drag == 0.0:
             self._predict()
         primitives, _ = self.world.primitives()
         if self.system.relaxes:
-            ways = self._start, self.packing.state, rows_then, primitives
-            self._through = passed_faces(touched, *ways)
+            self._through = passed_faces(
+                touched, self._start, self.packing.state, rows_then, primitives
+            )
         solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
             self.packing,
             primitives,
-            None if self._frozen is None else self._frozen.terms,
+            origin,
             self.system.gravity,
             self.system.drag,
             tolerance=solver.tolerance,
@@ -217,7 +219,7 @@ class Quasistatic:
             return None
         contacts = None
         unbalanced = np.zeros(len(self.packing))
-        turned = None if self.friction is None else relaxation.turned()
+        held = None if self.friction is None else (*relaxation.slips(), relaxation.turned())
         relaxed = self.system.relaxes and report.reason not in FAILED
         if relaxed:
             relaxation.write_back()
@@ -232,8 +234,9 @@ class Quasistatic:
         good = report.reason not in FAILED
         remembered = self._remembered()
         forces = None
-        if good and self.friction is not None and self._frozen is not None and turned is not None:
-            forces = self.friction.end(self._frozen, self.packing, turned)
+        if good and self.friction is not None and held is not None:
+            keys, slips, forces, turned = held
+            self.friction.end(keys, slips, turned)
         if self._limited and self._tries_again(contacts if good else None, forces):
             self._spent += report.iterations
             self._take_back()
@@ -488,19 +491,6 @@ class Quasistatic:
         distance = np.sqrt(change[0] ** 2 + change[1] ** 2)
         change *= held * np.minimum(1.0, np.sqrt(now) / np.maximum(distance, 1e-12))
         self.packing.state += change
-
-    def _freeze_friction(self, box: PeriodicBox | None) -> None:
-        """Contacts as they were before the bodies moved, for the lagged friction of this increment."""
-        if self.friction is None:
-            return
-        moved = self.world.placement()
-        self.world.place(self._placement)
-        primitives, owner = self.world.primitives()
-        pairs, bodies = self._contacts or self.contacts()
-        self.world.place(moved)
-        self._frozen = self.friction.begin(
-            self.packing, pairs, bodies, primitives, owner, self._placement, moved, box
-        )
 
     def _measure(
         self, bodies: observables.RigidContacts, friction: FrictionForces | None

@@ -10,9 +10,11 @@ from numpy.typing import NDArray
 
 from core import fire, neighbors, rigid_contacts
 from core.errors import InputError
-from core.friction import SPIN_MASS, TANGENTIAL_STIFFNESS, FrictionTerms
+from core.friction import SPIN_MASS
+from core.frictional_contacts import FrictionalContacts, FrictionForces, Origin
 from core.material import area_modulus, deformation_stiffness, shape_modulus
 from core.packing import Packing
+from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms
 from core.sweeps import collapsed
 from core.threads import running, share
 
@@ -68,7 +70,7 @@ class Relaxation:
         self,
         packing: Packing,
         primitives: NDArray[np.float64] | None = None,
-        friction: FrictionTerms | None = None,
+        friction: Origin | None = None,
         gravity: tuple[float, float] | None = None,
         drag: float = 0.0,
         *,
@@ -93,7 +95,9 @@ class Relaxation:
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
-        self._friction = friction
+        self._friction = (
+            None if friction is None else FrictionalContacts(friction, self._rigid)
+        )
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
@@ -134,7 +138,7 @@ class Relaxation:
                 self._minimizer,
                 self._box,
                 self._rigid,
-                self._friction,
+                self.friction_terms,
                 self._weight,
                 self._limits,
                 left,
@@ -176,6 +180,16 @@ class Relaxation:
         turned[self._minimizer.identity] = self._minimizer.state[5]
         return turned
 
+    @property
+    def friction_terms(self) -> FrictionTerms | None:
+        """What the kernels know of the frictional contacts of the lists as they are; None without friction."""
+        return None if self._friction is None else self._friction.terms
+
+    def slips(self) -> tuple[NDArray[np.int64], NDArray[np.float64], FrictionForces]:
+        """What frictional contacts remember, and their forces: see ``FrictionalContacts.end``. Only with friction."""
+        assert self._friction is not None
+        return self._friction.end(self._minimizer, self._box)
+
     def forces(self) -> NDArray[np.float64]:
         """Generalised forces (5, N), with friction (6, N), of the latest evaluation [k R], in the packing's own order."""
         forces = np.empty_like(self._minimizer.force)
@@ -197,11 +211,14 @@ class Relaxation:
         # At new lists, as no grain has then come far since the last: later nobody can tell a way through from one around.
         self._through ^= self._changed_sides()
         self._listed = True
+        friction = self._friction
+        if friction is not None:
+            friction.commit(self._minimizer, self._box)
         while True:
-            answer = fire.relist(
-                self._minimizer, self._box, self._rigid, self._friction, self._limits.skin
-            )
+            answer = fire.relist(self._minimizer, self._box, self._rigid, self._limits.skin)
             if answer == neighbors.FIT:
+                if friction is not None:
+                    friction.relist(self._minimizer, self._rigid, self._box)
                 return
             lists = self._minimizer.lists
             grains, pairs, slots = len(self.packing), len(lists.first), len(lists.width)

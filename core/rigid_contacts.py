@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.jit import kernel
+from core.slip import TANGENTIAL_STIFFNESS, body_slip
 
 EDGE, VERTEX, DISC = 0, 1, 2
 COLUMNS = 8
@@ -251,13 +252,19 @@ def changed_sides(before, after, rigid, box):
 
 
 @kernel
-def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box):
-    """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²]."""
+def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigid, box, friction):
+    """Add all grain–rigid contacts to ``force`` (rows 2–4: contact sums, see ``contacts``). Returns their energy [k R²].
+
+    ``friction`` is None where there is none, and no code for it exists then.
+    """
     # Every array is fetched once: inside the loop each look into the tuple would cost two atomic reference counts.
     primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
     x, y = state[0], state[1]
     s, u, v = support_coefficients[0], support_coefficients[1], support_coefficients[2]
     fx, fy, a, b, d = force[0], force[1], force[2], force[3], force[4]
+    if friction is not None:
+        coefficient, turn = friction.coefficient, friction.turn
+        change, sums, marks = friction.change, friction.sums, friction.body_marks
     energy = 0.0
     for k in range(rigid.used[0]):
         i = grain[k]
@@ -274,4 +281,26 @@ def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigi
         a[i] += g
         b[i] += g * (nx * nx - ny * ny)
         d[i] += g * 2.0 * nx * ny
+        if friction is not None:
+            rx = xi - primitives[m, 1]
+            ry = yi - primitives[m, 2]
+            nx = -nx
+            ny = -ny
+            ex = ((state[2, i] + state[3, i]) * nx + state[4, i] * ny) / h
+            ey = (state[4, i] * nx + (state[2, i] - state[3, i]) * ny) / h
+            slip = body_slip(
+                nx, ny, overlap, h, rx, ry, ex, ey, change, i, marks, k, turn[m], box
+            )
+            limit = coefficient * overlap / TANGENTIAL_STIFFNESS
+            slip = max(min(slip, limit), -limit)
+            pull = TANGENTIAL_STIFFNESS * contact_stiffness[i] * slip
+            energy += 0.5 * pull * slip
+            along_x = pull * ny  # − pull t
+            along_y = -pull * nx
+            fx[i] += along_x
+            fy[i] += along_y
+            sums[0, i] += along_x * ex
+            sums[1, i] += along_x * ey
+            sums[2, i] += along_y * ex
+            sums[3, i] += along_y * ey
     return energy

@@ -13,6 +13,7 @@ import numpy as np
 from core.contacts import add_contact_forces
 from core.elasticity import add_guard, finish
 from core.jit import kernel
+from core.slip import finish_friction
 
 CHUNK = 1024  # grains
 
@@ -109,10 +110,11 @@ def chunk_forces(
     area_stiffness,
     shape_stiffness,
     box,
+    friction,
 ):
     """Contacts and elasticity of the grains from ``begin`` to ``end`` into ``force``; returns their energy [k R²]."""
     energy = add_contact_forces(
-        begin, end, state, support, force, width, offset, neighbor, stiffness, box
+        begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
     )
     p, q1, q2 = state[2, begin:end], state[3, begin:end], state[4, begin:end]
     fp, fq1, fq2 = force[2, begin:end], force[3, begin:end], force[4, begin:end]
@@ -122,6 +124,22 @@ def chunk_forces(
     )
     if small > 0.0:
         own += add_guard(p, q1, q2, area, fp, fq1, fq2)
+    if friction is not None:
+        sums = friction.sums
+        finish_friction(
+            p,
+            q1,
+            q2,
+            sums[0, begin:end],
+            sums[1, begin:end],
+            sums[2, begin:end],
+            sums[3, begin:end],
+            sums[4, begin:end],
+            fp,
+            fq1,
+            fq2,
+            force[5, begin:end],
+        )
     return energy + own
 
 
@@ -138,6 +156,7 @@ def all_forces(
     area_stiffness,
     shape_stiffness,
     box,
+    friction,
 ):
     """``chunk_forces`` of all grains."""
     energy = 0.0
@@ -158,6 +177,7 @@ def all_forces(
                 area_stiffness,
                 shape_stiffness,
                 box,
+                friction,
             ),
         )
     return energy

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from core.contacts import prepare
 from core.errors import InputError
 from core.jit import kernel
+from core.slip import prepare_friction
 from core.sweeps import CHUNK, add, chunk_forces, drift, kick, largest, second_kick
 
 # A thread of OpenMP's pool that has nothing to do shall sleep: by default it spins, and where other programs want the core too
@@ -76,7 +77,7 @@ def first_kick(velocity, force, inverse_mass, keep, push, chunk, most):
 
 
 @kernel(parallel=True, forceinline=False)
-def move(state, velocity, dt, support, force):
+def move(state, velocity, dt, support, force, friction):
     """As ``sweeps.drift``, then as ``contacts.prepare``."""
     count = state.shape[1]
     for c in prange((count + CHUNK - 1) // CHUNK):
@@ -97,6 +98,8 @@ def move(state, velocity, dt, support, force):
             force[3, begin:end],
             force[4, begin:end],
         )
+        if friction is not None:
+            prepare_friction(begin, end, state, friction)
 
 
 @kernel(parallel=True, forceinline=False)
@@ -112,6 +115,7 @@ def all_forces(
     area_stiffness,
     shape_stiffness,
     box,
+    friction,
     sums,
 ):
     """As ``sweeps.all_forces``."""
@@ -132,6 +136,7 @@ def all_forces(
             area_stiffness,
             shape_stiffness,
             box,
+            friction,
         )
     energy = 0.0
     for c in range(chunks):

@@ -11,7 +11,8 @@ import numpy as np
 
 from core import contacts, fire, kernel_cache, neighbors, observables, rigid_contacts
 from core.arrays import Floats
-from core.friction import Friction, FrictionTerms
+from core.friction import Friction
+from core.frictional_contacts import Origin
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation
 
@@ -29,11 +30,11 @@ def compile_kernels(
     packing = Packing([0.0, 1.9, 3.8], [0.0, 0.1, 0.0], box=box)
     rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
     primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
-    terms = _friction_terms(packing, primitives) if friction else None
+    origin = _origin(packing, primitives) if friction else None
     relaxation = Relaxation(
         packing,
         primitives,
-        terms,
+        origin,
         (0.0, -1e-3) if gravity else None,
         tolerance=0.5,
         max_iterations=10,
@@ -42,12 +43,13 @@ def compile_kernels(
     weight = relaxation._weight
     steps: list[tuple[float, Callable[[], object]]] = [
         (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
-        (0.10, lambda: fire.relist(m, form, body, terms, 0.1)),
+        (0.10, relaxation._relist),
         (0.15, lambda: _contact_forces(m, form)),
-        (0.15, lambda: fire.evaluate(m, form, body, terms, weight, None)),
+        (0.15, lambda: fire.evaluate(m, form, body, relaxation.friction_terms, weight, None)),
         (0.10, lambda: fire.mean_contact_force(m, form, body)),
         (0.20, lambda: relaxation.run(10)),
-        (0.02, relaxation.gone_through),
+        (0.01, relaxation.gone_through),
+        (0.01, lambda: relaxation.slips() if friction else None),
         (0.08, lambda: observables.grain_contacts(packing)),
         (0.07, lambda: observables.body_contacts(packing, primitives)),
     ]
@@ -60,15 +62,10 @@ def compile_kernels(
     kernel_cache.prune()
 
 
-def _friction_terms(packing: Packing, primitives: Floats) -> FrictionTerms:
-    """Of an increment in which nothing moves, begun and ended."""
-    pairs = observables.grain_contacts(packing)
-    touching = observables.body_contacts(packing, primitives)
+def _origin(packing: Packing, primitives: Floats) -> Origin:
+    """Of an increment in which nothing moves."""
     owner, still = np.zeros(len(primitives), dtype=np.int64), np.zeros((1, 3))
-    memory = Friction(0.5, len(packing))
-    frozen = memory.begin(packing, pairs, touching, primitives, owner, still, still)
-    memory.end(frozen, packing, np.zeros(len(packing)))
-    return frozen.terms
+    return Friction(0.5, len(packing)).begin(packing, primitives, owner, still, still)
 
 
 def _contact_forces(m: fire.Minimizer, box: tuple[float, ...] | None) -> None:
@@ -76,4 +73,4 @@ def _contact_forces(m: fire.Minimizer, box: tuple[float, ...] | None) -> None:
     rows, lists = m.force, m.lists
     contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
     slots = lists.width, lists.offset, lists.neighbor, lists.stiffness
-    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box)
+    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box, None)

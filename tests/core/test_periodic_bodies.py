@@ -311,7 +311,7 @@ def test_frictional_contacts_across_the_edge_slip_like_others() -> None:
         memories.append(friction.remembered())
     plain, other = memories
     assert set(plain) == set(other)
-    assert max(abs(v) for v in plain.values()) > 1e-3
+    assert max(abs(v) for v in plain.values()) > 3e-4  # caps of overlaps of some 1e-3 R
     assert max(abs(plain[k] - other[k]) for k in plain) < 1e-6
 
 

@@ -64,7 +64,8 @@ def test_a_flung_intruder_passes_through_nothing() -> None:
             assert np.all(run.packing.semi_axes[1] > 0.0)
             moved = np.hypot(*(run.packing.state[:2] - before))
             rearranged = max(rearranged, float(moved.max()))
-        assert done.stopped == {"intruder": "wall"}
+        # At the wall, or before it where the grains between take all that the hand gives.
+        assert done.stopped["intruder"] in ("wall", "force limit")
     assert rearranged > 0.15
 
 

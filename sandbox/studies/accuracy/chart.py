@@ -133,7 +133,7 @@ def paper_chart(
             m,
             relaxation._box,
             relaxation._rigid,
-            relaxation._friction,
+            relaxation.friction_terms,
             relaxation._weight,
             limits,
             chart,

@@ -84,6 +84,7 @@ def repeat_pairs(times, m, box):
             lists.neighbor,
             lists.stiffness,
             box,
+            None,
         )
     return energy
 
@@ -188,7 +189,7 @@ def measure_iteration(grains: int, seconds: float) -> dict[str, Any]:
 
     def rebuild(times: int) -> None:
         for _ in range(times):
-            fire.relist(m, box, None, None, skin)
+            fire.relist(m, box, None, skin)
 
     jobs: dict[str, Callable[[int], object]] = {
         "rebuild": rebuild,

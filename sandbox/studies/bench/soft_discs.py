@@ -128,7 +128,7 @@ def relax(discs: SoftDiscs) -> Relaxed:
             code, used = fire.run(m, box, None, None, None, limits, due - iterations, None)
             iterations += used
             if code == fire.LISTS_STALE:
-                if fire.relist(m, box, None, None, SKIN) != neighbors.FIT:
+                if fire.relist(m, box, None, SKIN) != neighbors.FIT:
                     raise RuntimeError("the neighbour lists are too short for these discs")
             elif code != fire.BUDGET:
                 raise RuntimeError(f"the relaxation of soft discs ended with {code}")

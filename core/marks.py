@@ -1,0 +1,178 @@
+"""What is done with frictional contacts once a list, and not in every evaluation: measure them, and lay out their marks.
+
+K pairs, each once: first P of two grains, as long as ``at_j`` is, then those of a grain and a primitive.
+"""
+
+from __future__ import annotations
+
+import math
+
+from core.jit import kernel
+from core.periodic import COINCIDENT, nearest
+from core.rigid_contacts import EDGE, VERTEX, image, nearest_direction, past_end, touch
+from core.slip import TANGENTIAL_STIFFNESS, body_slip, pair_slip, share_touched
+
+
+@kernel
+def outline_gap(primitives, m, x, y, s, u, v):
+    """(distance [R] from the outline of a grain to a primitive, n to the primitive, h); beyond an edge's end to that end.
+
+    Negative where they overlap.
+    """
+    kind = primitives[m, 0]
+    dx = x - primitives[m, 1]
+    dy = y - primitives[m, 2]
+    nx = 1.0
+    ny = 0.0
+    corner = kind == VERTEX
+    if kind == EDGE:
+        ux = primitives[m, 3]
+        uy = primitives[m, 4]
+        if past_end(s, u, v, dx, dy, -ux, -uy) > 0.0:
+            corner = True
+        elif past_end(s, u, v, x - primitives[m, 5], y - primitives[m, 6], ux, uy) > 0.0:
+            corner = True
+            dx = x - primitives[m, 5]
+            dy = y - primitives[m, 6]
+        else:
+            side = 1.0 if ux * dy - uy * dx >= 0.0 else -1.0
+            nx = -side * uy
+            ny = side * ux
+    elif not corner:
+        r = math.sqrt(dx * dx + dy * dy + COINCIDENT)
+        nx = dx / r
+        ny = dy / r
+    if corner:
+        nx, ny = nearest_direction(s, u, v, dx, dy)
+    h = math.sqrt(s + u * (nx * nx - ny * ny) + v * 2.0 * nx * ny)
+    return nx * dx + ny * dy - h - primitives[m, 7], -nx, -ny, h
+
+
+@kernel
+def measure(at_i, at_j, primitive, state, primitives, box, values):
+    """Fill rows gap, d_x, d_y, n_x, n_y, h_i, h_j of ``values`` (7, K) for all pairs as they stand; d as in a mark."""
+    x, y, p, q1, q2 = state[0], state[1], state[2], state[3], state[4]
+    pairs = at_j.shape[0]
+    for k in range(at_i.shape[0]):
+        i = at_i[k]
+        s = p[i] * p[i] + q1[i] * q1[i] + q2[i] * q2[i]
+        u = 2.0 * p[i] * q1[i]
+        v = 2.0 * p[i] * q2[i]
+        other = 0.0
+        if k < pairs:
+            j = at_j[k]
+            dx, dy = nearest(x[j] - x[i], y[j] - y[i], box)
+            r = math.sqrt(dx * dx + dy * dy + COINCIDENT)
+            nx = dx / r
+            ny = dy / r
+            c2 = nx * nx - ny * ny
+            s2 = 2.0 * nx * ny
+            h = math.sqrt(s + u * c2 + v * s2)
+            s = p[j] * p[j] + q1[j] * q1[j] + q2[j] * q2[j]
+            other = math.sqrt(s + 2.0 * p[j] * (q1[j] * c2 + q2[j] * s2))
+            gap = r - h - other
+        else:
+            m = primitive[k - pairs]
+            dx, dy = image(primitives, m, x[i], y[i], box)
+            gap, nx, ny, h = outline_gap(primitives, m, dx, dy, s, u, v)
+            dx -= primitives[m, 1]
+            dy -= primitives[m, 2]
+        values[0, k] = gap
+        values[1, k] = dx
+        values[2, k] = dy
+        values[3, k] = nx
+        values[4, k] = ny
+        values[5, k] = h
+        values[6, k] = other
+
+
+@kernel
+def slips(at_i, at_j, primitive, marks, state, friction, primitives, box, place, held):
+    """Slips within their caps, and the caps over k_t, into ``held`` (2, K) [R]; both 0 where nothing touches.
+
+    ``marks`` (4, K), and ``place`` (7, K) as ``measure`` fills it; ``friction.change`` must be that of the state.
+    """
+    change, turn = friction.change, friction.turn
+    p, q1, q2 = state[2], state[3], state[4]
+    pairs = at_j.shape[0]
+    for k in range(at_i.shape[0]):
+        held[0, k] = 0.0
+        held[1, k] = 0.0
+        i = at_i[k]
+        if k < pairs:
+            overlap = -place[0, k]
+            if overlap <= 0.0:
+                continue
+            j = at_j[k]
+            nx, ny, hi, hj = place[3, k], place[4, k], place[5, k], place[6, k]
+            u = pair_slip(
+                nx,
+                ny,
+                place[1, k] - marks[2, k],
+                place[2, k] - marks[3, k],
+                overlap,
+                share_touched(overlap, marks[1, k]),
+                marks[0, k],
+                ((p[i] + q1[i]) * nx + q2[i] * ny) / hi,
+                (q2[i] * nx + (p[i] - q1[i]) * ny) / hi,
+                change[0, i],
+                change[1, i],
+                change[2, i],
+                change[3, i],
+                change[4, i],
+                ((p[j] + q1[j]) * nx + q2[j] * ny) / hj,
+                (q2[j] * nx + (p[j] - q1[j]) * ny) / hj,
+                change[0, j],
+                change[1, j],
+                change[2, j],
+                change[3, j],
+                change[4, j],
+            )
+        else:
+            m = primitive[k - pairs]
+            x, y = image(primitives, m, state[0, i], state[1, i], box)
+            s = p[i] * p[i] + q1[i] * q1[i] + q2[i] * q2[i]
+            overlap, nx, ny, h, _ = touch(
+                primitives, m, x, y, s, 2.0 * p[i] * q1[i], 2.0 * p[i] * q2[i]
+            )
+            if overlap <= 0.0:
+                continue
+            nx = -nx
+            ny = -ny
+            u = body_slip(
+                nx,
+                ny,
+                overlap,
+                h,
+                x - primitives[m, 1],
+                y - primitives[m, 2],
+                ((p[i] + q1[i]) * nx + q2[i] * ny) / h,
+                (q2[i] * nx + (p[i] - q1[i]) * ny) / h,
+                change,
+                i,
+                marks,
+                k,
+                turn[m],
+                box,
+            )
+        limit = friction.coefficient * overlap / TANGENTIAL_STIFFNESS
+        held[0, k] = max(min(u, limit), -limit)
+        held[1, k] = limit
+
+
+@kernel
+def lay_out(lists, at_i, at_j, marks, filled, slots):
+    """Put the marks (4, P) of each pair of grains where its two entries stand in the slots (4, E), seen from either side."""
+    offset = lists.offset
+    for i in range(filled.shape[0]):
+        filled[i] = 0
+    for k in range(at_j.shape[0]):
+        for turned in range(2):
+            i = at_j[k] if turned else at_i[k]
+            side = -1.0 if turned else 1.0
+            at = offset[filled[i]] + i
+            filled[i] += 1
+            slots[0, at] = marks[0, k]
+            slots[1, at] = marks[1, k]
+            slots[2, at] = side * marks[2, k]
+            slots[3, at] = side * marks[3, k]
