@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("scipy")
 
 from sandbox.studies.common.statistics import FAILS, HOLDS, OPEN, Demand, Exact, Student
-from sandbox.studies.paper import bulk, grains, hopper, intruder, quakes, report, shear
+from sandbox.studies.paper import bulk, cost, grains, hopper, intruder, quakes, report, shear
 from sandbox.studies.paper import claims as parts_of
 from sandbox.studies.paper.claims import (
     ASPECTS,
@@ -615,3 +615,22 @@ def test_a_table_has_one_row_a_run_and_nothing_breaks_out_of_its_cells() -> None
     assert "“a \\| b”" in text
     assert "| direction: says | quantity: 2 | above 1 | no chance | **holds** |" in text
     assert "Must be above 1: a direction" in text
+
+
+def test_the_cost_of_the_papers_conditions_is_extrapolated() -> None:
+    """Steps five times as many that take twice as long: 25 times as many take four times as long."""
+    plain = [replace(run, seconds=10.0) for run in shears(dict.fromkeys(LAMBDAS, 0.1), STIFFNESS)]
+    fine = []
+    for run in plain:
+        settings = dict(run.request.settings)
+        if settings["packing_fraction"] == shear.COMMON[-1] and settings["grains"] == shear.GRAINS:
+            asked = replace(run.request, settings=tuple({**settings, "step": 0.01}.items()))
+            fine.append(replace(run, request=asked, seconds=20.0))
+    assert cost.growth(plain) == 1.0
+    assert cost.growth(plain + fine) == pytest.approx(math.log(2.0) / math.log(5.0))
+    (steady,) = cost.estimate(plain + fine)
+    assert steady.protocol.startswith("Fig. 4")
+    points = max(len(fractions) for fractions in shear.FRACTIONS.values())
+    assert steady.runs == SYSTEMS * points * len(LAMBDAS)
+    assert steady.hours == pytest.approx(steady.runs * 10.0 * 4.0 / 3600.0)
+    assert cost.estimate([run for run in plain if lam_of(run.request) != AUXETIC]) == []

@@ -146,7 +146,7 @@ def _judge_silo(rows: Sequence[Row]) -> list[Check]:
 # The tilted bed.
 
 FRICTIONS = (0.0, 0.2, 0.5)
-BED_SEEDS = 12
+BED_SEEDS = 8
 BEDS = (
     (64.0, 40.0),
     (32.0, 20.0),
