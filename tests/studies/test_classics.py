@@ -125,7 +125,7 @@ def test_jamming_is_judged_by_shares() -> None:
         for width, jams in zip(clogging.WIDTHS, hits, strict=True):
             for k in range(24):
                 job = Job("jamming", (("width", width),), FIRST + k)
-                rows.append(Row(job, {"jammed": float(k < jams)}))
+                rows.append(Row(job, {"jammed": float(k < jams), "out": float(k)}))
         return [verdict for verdict, _ in judged(case("jamming").judge(rows))]
 
     assert shares(24, 20, 4, 0)[:2] == [HOLDS, HOLDS]

@@ -71,7 +71,7 @@ def _judge(rows: Sequence[Row]) -> list[Check]:
     judging = seeds_of(rows)
     checks = [
         Check(
-            f"J at {width:g} diameters ({shares[width].hits} of {shares[width].count})",
+            f"J at {width:g} diameters ({_told(where(rows, width=width))})",
             shares[width],
             expected,
             demand,
@@ -87,7 +87,7 @@ def _judge(rows: Sequence[Row]) -> list[Check]:
         checks.append(
             Check(
                 f"J at {narrow:g} less J at {wide:g} diameters "
-                f"({shares[narrow].hits} and {shares[wide].hits} of {shares[wide].count})",
+                f"({_told(where(rows, width=narrow))}; {_told(where(rows, width=wide))})",
                 Apart(shares[narrow], shares[wide]),
                 "above 0: J falls with the width",
                 Demand(0.0),
@@ -96,6 +96,13 @@ def _judge(rows: Sequence[Row]) -> list[Check]:
             )
         )
     return checks
+
+
+def _told(rows: Sequence[Row]) -> str:
+    """How many jammed, and how many of those before a grain had left."""
+    jammed = [row for row in rows if row["jammed"] > 0.5]
+    never = sum(row["out"] == 0.0 for row in jammed)
+    return f"{len(jammed)} of {len(rows)}, {never or 'none'} of them at once"
 
 
 CASES = (

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from core.material import from_paper
 from sandbox.studies.paper.claims import Unmeasurable, number
 from sandbox.studies.paper.runs import Request, Result
+from scenes import registry
 from scenes.parameter import Value
 
 SETTING_UP = range(1, 11)  # seeds that thresholds, strains and pressures were chosen on
@@ -20,9 +21,6 @@ LAMBDAS = (0.01, 0.1, 1.0, 10.0, 100.0)
 MU = 0.1
 AUXETIC, NEUTRAL, REGULAR = 0.1, 1.0, 10.0
 EXTREMES = (0.01, 100.0)
-HARDEST = (
-    1000.0  # [k] contact stiffness that scenes go up to: λ = 0.01 and 100 at μ = 0.1 ask for 1022
-)
 
 
 def seeds(count: int, quick: bool) -> range:
@@ -40,8 +38,14 @@ def material(lam: float) -> tuple[tuple[str, Value], ...]:
     nu, stiffness = map(float, from_paper(lam, MU))
     return (
         (f"{packing(lam)}_poisson_ratio", nu),
-        ("contact_stiffness", min(stiffness, HARDEST)),
+        ("contact_stiffness", min(stiffness, hardest())),
     )
+
+
+def hardest() -> float:
+    """The largest contact stiffness that scenes go up to [k]; λ = 0.01 and 100 at μ = 0.1 ask for 1022."""
+    scene = registry.get("couette")
+    return float(next(p.high for p in scene.parameters if p.name == "contact_stiffness"))
 
 
 def poisson_ratio(request: Request) -> float:

@@ -68,8 +68,8 @@ STEP = 0.05  # [R] of the steady shear: a shear strain of 2.5e-3
 FINE_STEP = 0.01
 CYCLE_STEP = 0.005  # [R] of the small cycles: a shear strain of 2e-4
 PAPER_STEP = 0.002  # [R] in the small cycles: a shear strain of 1e-4, the paper's
-FEW = 8  # seeds of a variation
-FEWEST = 4  # of the costliest kinds
+FEW = 8  # seeds of a variation, and of λ = 1
+FEWEST = 6  # of the costliest kinds
 FLOWS = 0.3  # shear strain after which the flow counts as steady
 FAR = 0.03  # shear strain that is far from the middle of a cycle of 0.04
 POSITIVE = 1e-4  # [k] a smaller pressure is none: the plates do not feel each other
@@ -124,7 +124,8 @@ def small_cycles(quick: bool) -> list[Request]:
     if quick:
         return _cell(quick, SMALL, QUICK_FRACTIONS, plain)
     return [
-        *_cell(quick, SMALL, _of(REGULAR, NEUTRAL, AUXETIC), plain),
+        *_cell(quick, SMALL, _of(REGULAR, AUXETIC), plain),
+        *_cell(quick, SMALL, _of(NEUTRAL), plain, FEW),
         *_cell(quick, SMALL, _of(*EXTREMES), plain, FEWEST),
         *_cell(quick, SMALL, AROUND_HIGH, {**plain, "grains": GRAINS // 2}, FEW),
         *_cell(quick, SMALL, AROUND_HIGH, {**careful, "step": PAPER_STEP}, FEW),
@@ -138,7 +139,8 @@ def steady_shears(quick: bool) -> list[Request]:
     plain = {"strain": 0.8, "step": STEP}
     dense = dict.fromkeys((REGULAR, AUXETIC), COMMON[-1:])
     return [
-        *_cell(quick, STEADY, _of(REGULAR, NEUTRAL, AUXETIC), plain),
+        *_cell(quick, STEADY, _of(REGULAR, AUXETIC), plain),
+        *_cell(quick, STEADY, _of(NEUTRAL), plain, FEW),
         *_cell(quick, STEADY, _of(*EXTREMES), plain, FEWEST),
         *_cell(quick, STEADY, dense, {**plain, "step": FINE_STEP}, FEW),
     ]
