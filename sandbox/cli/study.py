@@ -106,10 +106,11 @@ def classics(options: argparse.Namespace) -> int:
     from sandbox.studies.common.folder import prepare_folder, require_scipy
     from sandbox.studies.common.statistics import FAILS
 
+    cases = study.choose(options.only)
     require_scipy()
     folder = prepare_folder(options.out, "")
     with stop_like_ctrl_c():
-        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+        done = study.study(folder, quick=options.quick, jobs=options.jobs, cases=cases)
     if done.interrupted:
         return stopped(len(done.rows))
     width = max((len(case.name) for case, _, _, _ in done.verdicts), default=0)
@@ -129,10 +130,11 @@ def stopped(runs: int) -> int:
 
 
 def refuse_foreign_options(options: argparse.Namespace) -> None:
-    """Raise InputError for an option that belongs to another study."""
-    for name, study in OWN_OPTIONS.items():
-        if options.name != study and getattr(options, name):
-            raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
+    """Raise InputError for an option that belongs to other studies."""
+    for name, owners in OWN_OPTIONS.items():
+        if options.name not in owners and getattr(options, name):
+            whose = " and ".join(owners)
+            raise InputError(f"--{name} belongs to study {whose}, not to study {options.name}")
 
 
 STUDIES: dict[str, Study] = {
@@ -142,4 +144,4 @@ STUDIES: dict[str, Study] = {
     "hand": hand,
     "classics": classics,
 }
-OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}
+OWN_OPTIONS = {"only": ("paper", "classics"), "scene": ("accuracy",)}

@@ -199,10 +199,36 @@ def test_without_scipy_nothing_is_begun(
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["study", "classics", "--out", "x", "--only", "piles"], "did you mean pile?"),
+        (["study", "classics", "--out", "x", "--only", "zzz"], "there are pile"),
+        (["study", "hand", "--out", "x", "--only", "pile"], "belongs to study paper and classics"),
+        (["study", "classics", "--out", "x", "--scene", "hopper"], "belongs to study accuracy"),
+    ],
+)
+def test_mistakes_are_one_line(
+    words: list[str],
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(words) == 2
+    said = capsys.readouterr()
+    assert message in said.err
+    assert said.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.end_to_end
-def test_the_command_refuses_what_belongs_to_another_study(tmp_path: Path) -> None:
-    words = ["study", "classics", "--out", str(tmp_path / "out"), "--only", "pile"]
-    command = [sys.executable, "-m", "sandbox", *words]
-    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 2
-    assert "--only belongs to study paper" in done.stderr
+def test_quick_study_of_one_case(tmp_path: Path) -> None:
+    words = ["study", "classics", "--quick", "--jobs", "1", "--only", "plates", "--out"]
+    command = [sys.executable, "-m", "sandbox", *words, str(tmp_path / "out")]
+    done = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("plates  holds ") == 15
+    written = sorted(path.name for path in (tmp_path / "out").iterdir())
+    assert written == ["classics.md", "results.json", "runs.csv"]

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from core.errors import InputError, did_you_mean
 from core.warmup import compile_kernels
 from sandbox.bars import bar_options
 from sandbox.studies.classics import clogging, discs, grains, heaps, packings
@@ -35,6 +36,16 @@ class Study:
     verdicts: tuple[Verdict, ...]
     failures: tuple[str, ...]
     interrupted: bool
+
+
+def choose(names: Sequence[str] | None) -> list[Case]:
+    """The cases of those names, or all, in their own order. Raises InputError for an unknown name."""
+    known = [case.name for case in CASES]
+    for name in names or ():
+        if name not in known:
+            hint = did_you_mean(name, known) or f": there are {', '.join(known)}"
+            raise InputError(f"--only {name}: no such case{hint}")
+    return [case for case in CASES if not names or case.name in names]
 
 
 def study(

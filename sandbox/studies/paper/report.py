@@ -209,18 +209,23 @@ def as_table(results: Sequence[Result], used: Mapping[Request, Sequence[str]]) -
             row += _three(values) if values else ["", "", ""]
         for name in lists:
             entries = result.lists.get(name)
-            row += ["", ""] if entries is None else [len(entries), _short(entries)]
+            row += (
+                ["", ""]
+                if entries is None
+                else [len(entries), _told(np.mean(entries)) if entries else ""]
+            )
         writer.writerow(row)
     return text.getvalue()
 
 
-def _three(values: Sequence[float]) -> list[object]:
+def _three(values: Sequence[float]) -> list[str]:
     row = np.asarray(values, dtype=np.float64)
-    return [f"{v:.8g}" if np.isfinite(v) else "" for v in (row.mean(), row.max(), row[-1])]
+    return [_told(value) for value in (row.mean(), row.max(), row[-1])]
 
 
-def _short(values: Sequence[float]) -> str:
-    return f"{np.mean(values):.8g}" if len(values) else ""
+def _told(value: float) -> str:
+    """Nothing that is not finite reaches the table."""
+    return f"{value:.8g}" if np.isfinite(value) else ""
 
 
 def as_json(judged: Sequence[Judged], results: Sequence[Result], about: Mapping[str, Any]) -> str:
