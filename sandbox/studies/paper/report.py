@@ -212,7 +212,7 @@ def as_table(results: Sequence[Result], used: Mapping[Request, Sequence[str]]) -
             row += (
                 ["", ""]
                 if entries is None
-                else [len(entries), _told(np.mean(entries)) if entries else ""]
+                else [len(entries), _told(float(np.mean(entries))) if entries else ""]
             )
         writer.writerow(row)
     return text.getvalue()
