@@ -91,14 +91,15 @@ def circle_through(start: str) -> list[str]:
 # Each room, and those below it that it may import. A room within another is told from it where it may import less.
 STUDY = "studies.common session draw scenes core"
 ROOMS = {
-    "cli": "window studies.accuracy studies.stability studies.paper studies.bench studies.hand "
+    "cli": "window studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
     "studies.common record files session words scenes core",
     "window": "window.solvers record files draw lessons session words scenes core",
     "window.solvers": "files session words scenes core",
     "record": "files draw session scenes core",
     "studies.accuracy": STUDY,
     "studies.stability": STUDY,
-    "studies.paper": STUDY,
+    "studies.paper": f"studies.hand {STUDY}",
+    "studies.classics": STUDY,
     "studies.bench": STUDY,
     "studies.hand": f"lessons {STUDY}",
     "studies.common": "core",

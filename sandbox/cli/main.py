@@ -188,7 +188,10 @@ def _add_study(command: Command) -> None:
     )
     study.add_argument("--quick", action="store_true", help="fewer seeds, smaller packings")
     study.add_argument(
-        "--only", nargs="+", metavar="CLAIM", help="these claims instead of all (paper)"
+        "--only",
+        nargs="+",
+        metavar="NAME",
+        help="these claims (paper) or cases (classics) instead of all",
     )
     study.add_argument(
         "--scene", nargs="+", metavar="NAME", help="these scenes instead of all (accuracy)"

@@ -18,20 +18,21 @@ Study = Callable[[argparse.Namespace], int]
 def paper(options: argparse.Namespace) -> int:
     """Judge the claims of the paper."""
     from sandbox.interrupts import stop_like_ctrl_c
-    from sandbox.studies.common.folder import prepare_folder, require_matplotlib
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
     from sandbox.studies.paper import study
+    from sandbox.studies.paper.report import summary
 
     study.choose(options.only)
     require_matplotlib()
+    require_scipy()
     folder = prepare_folder(options.out)
     with stop_like_ctrl_c():
         outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
     if outcome.interrupted:
         return stopped(outcome.runs)
-    width = max(len(row.claim.name) for row in outcome.judged)
-    for row in outcome.judged:
-        print(f"{row.claim.name:<{width}}  {study.summary(row.finding)}")
-    print(f"table, numbers and figures: {folder / 'claims.md'}, results.json, *.png")
+    for line in summary(outcome.judged):
+        print(line)
+    print(f"tables, numbers and figures: {folder / 'claims.md'}, runs.csv, results.json, *.png")
     return OK
 
 
@@ -98,6 +99,30 @@ def hand(options: argparse.Namespace) -> int:
     return FAILED if found else OK
 
 
+def classics(options: argparse.Namespace) -> int:
+    """Hold the program against textbook and published cases."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.classics import study
+    from sandbox.studies.common.folder import prepare_folder, require_scipy
+    from sandbox.studies.common.statistics import FAILS
+
+    cases = study.choose(options.only)
+    require_scipy()
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, quick=options.quick, jobs=options.jobs, cases=cases)
+    if done.interrupted:
+        return stopped(len(done.rows))
+    width = max((len(case.name) for case, _, _, _ in done.verdicts), default=0)
+    for case, check, verdict, _ in done.verdicts:
+        print(f"{case.name:<{width}}  {verdict:<15}  {check.quantity}: {check.estimate.value:.6g}")
+    for line in done.failures:
+        print(f"failed: {line}")
+    print(f"tables and numbers: {folder / 'classics.md'}, runs.csv, results.json")
+    wrong = any(verdict == FAILS for _, _, verdict, _ in done.verdicts)
+    return FAILED if done.failures or wrong else OK
+
+
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
     print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
@@ -105,10 +130,11 @@ def stopped(runs: int) -> int:
 
 
 def refuse_foreign_options(options: argparse.Namespace) -> None:
-    """Raise InputError for an option that belongs to another study."""
-    for name, study in OWN_OPTIONS.items():
-        if options.name != study and getattr(options, name):
-            raise InputError(f"--{name} belongs to study {study}, not to study {options.name}")
+    """Raise InputError for an option that belongs to other studies."""
+    for name, owners in OWN_OPTIONS.items():
+        if options.name not in owners and getattr(options, name):
+            whose = " and ".join(owners)
+            raise InputError(f"--{name} belongs to study {whose}, not to study {options.name}")
 
 
 STUDIES: dict[str, Study] = {
@@ -116,5 +142,6 @@ STUDIES: dict[str, Study] = {
     "accuracy": accuracy,
     "stability": stability,
     "hand": hand,
+    "classics": classics,
 }
-OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}
+OWN_OPTIONS = {"only": ("paper", "classics"), "scene": ("accuracy",)}

@@ -121,13 +121,3 @@ def test_what_is_wrong_is_named() -> None:
     found = report.wrong(rows)
     assert len(found) == 4
     assert all("hopper, seed 7" in line for line in found)
-
-
-def test_wilson_interval_by_its_closed_form() -> None:
-    """z = 1.96: (p + z²/2n ± z √(p(1−p)/n + z²/4n²)) / (1 + z²/n)."""
-    z, n, p = 1.959963984540054, 20, 0.6
-    middle, half = p + z * z / (2 * n), z * (p * (1 - p) / n + z * z / (4 * n * n)) ** 0.5
-    low, high = report.wilson(12, 20)
-    assert low == pytest.approx((middle - half) / (1 + z * z / n))
-    assert high == pytest.approx((middle + half) / (1 + z * z / n))
-    assert report.wilson(20, 20)[1] == 1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import re
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -16,15 +18,28 @@ import pytest
 from core.errors import InputError
 from sandbox.cli import main as cli
 from sandbox.studies.common.pool import Stopped
+from sandbox.studies.common.statistics import Demand
 from sandbox.studies.paper import study as paper
-from sandbox.studies.paper.claims import Claim, Figure, Finding, Line, Measured, Panel
+from sandbox.studies.paper.claims import (
+    Claim,
+    Figure,
+    Line,
+    Measured,
+    Panel,
+    Part,
+    Reading,
+    Threshold,
+    exactly,
+)
 from sandbox.studies.paper.runs import (
+    HAND,
     Request,
     Result,
     Store,
     execute,
     run_all,
 )
+from scenes.scene import HAND_STRENGTH
 
 REPOSITORY = Path(__file__).parents[2]
 TINY = (("grains", 2), ("step", 0.05), ("tolerance", 1e-2))
@@ -107,14 +122,17 @@ def test_only_what_is_missing_is_run_again(tmp_path: Path) -> None:
     """Two runs and one that fails; one file is deleted; that one and the failed one are run again."""
     bad = Request("grain_row", "regular", 1, (("grains", 0),))
     requests = (tiny("regular"), tiny("auxetic"), bad)
-    claim = Claim("tiny", "", "words", lambda quick: requests[:2], count)
-    broken = Claim("broken", "", "words", lambda quick: requests, count)
+    part = Part(
+        "value", "says", "increments in all", Threshold(Demand(11.5, 12.5), "reason"), count
+    )
+    claim = Claim("tiny", "", "words", lambda quick: requests[:2], (part,))
+    broken = Claim("broken", "", "words", lambda quick: requests, (part,))
     (tmp_path / "runs").mkdir()
     outcome = paper.study(tmp_path, jobs=2, claims=(claim, broken))
     assert (outcome.runs, outcome.failed, outcome.interrupted) == (3, 1, False)
-    verdicts = {row.claim.name: row.finding for row in outcome.judged}
-    assert verdicts["tiny"].holds is True
-    assert verdicts["broken"].holds is None
+    verdicts = {row.claim.name: row.findings[0] for row in outcome.judged}
+    assert verdicts["tiny"].verdict == "holds"
+    assert verdicts["broken"].verdict == "not measured"
     assert "grains" in verdicts["broken"].decided_by
 
     store = Store(tmp_path / "runs")
@@ -128,18 +146,38 @@ def test_only_what_is_missing_is_run_again(tmp_path: Path) -> None:
 
     data = json.loads((tmp_path / "results.json").read_text())
     assert data["runs_from_before"] == 1
-    assert [claim["verdict"] for claim in data["claims"]] == ["holds", "not measured"]
-    assert sum(run["failure"] is not None for run in data["runs"]) == 1
+    verdicts_told = [claim["parts"][0]["verdict"] for claim in data["claims"]]
+    assert verdicts_told == ["holds", "not measured"]
     text = (tmp_path / "claims.md").read_text()
-    assert "| `tiny` () | “words” | increments 12 | **holds**: 12 |" in text
-    assert "**not measured**: 1 of 3 runs failed" in text
+    assert (
+        "| value: says | increments in all: 12 | between 11.5 and 12.5 | no chance | **holds** |"
+        in text
+    )
+    assert "| value: says | 1 of 3 runs failed" in text
+    with (tmp_path / "runs.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["claims"] for row in rows] == ["tiny broken", "tiny broken", "broken"]
+    assert [row["increments"] for row in rows] == ["6", "6", "0"]
+    assert sum(bool(row["failure"]) for row in rows) == 1
 
 
-def count(results: object) -> Finding:
+def count(results: Sequence[Result]) -> Reading:
     """How many increments there were in all."""
-    assert isinstance(results, list)
     total = sum(len(run.columns["stroke"]) - 1 for run in results)
-    return Finding(total == 12, f"{total}", (Measured.of("increments", "", total),))
+    return exactly(total, Measured.of("increments", "", total))
+
+
+def test_a_hand_is_that_of_the_study_of_the_hand() -> None:
+    """The same push comes to the same, and what a run writes down of it can be kept."""
+    from sandbox.studies.hand.jobs import Job, push
+
+    request = Request("grain_row", "regular", 1, ((HAND_STRENGTH, 0.5),), probe=HAND)
+    done = execute(request)
+    row = push(Job("push", "grain_row", "regular", 1, 0.5), lambda: None)
+    assert done.lists["locked"] == [1.0]
+    assert done.lists["peak_force"] == [row["peak_force"]]
+    assert done.increments == row["increments"]
+    assert done.ended is None
 
 
 def test_a_process_that_dies_fails_its_run_alone(
@@ -249,19 +287,20 @@ def test_quick_study_of_one_claim(tmp_path: Path) -> None:
     words = command(tmp_path / "out", "--quick", "--only", "grain_row", "--jobs", "1")
     done = subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
-    assert re.match(r"grain_row  holds ", done.stdout)
+    assert re.match(r"grain_row  holds +direction: ", done.stdout)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
         "claims.md",
         "fig-poisson-effect.png",
         "results.json",
         "runs",
+        "runs.csv",
     ]
     data = json.loads((tmp_path / "out" / "results.json").read_text())
     assert data["quick"] is True
-    assert data["claims"][0]["verdict"] == "holds"
+    assert [part["verdict"] for part in data["claims"][0]["parts"]] == ["holds", "holds"]
     assert data["machine"]["cores"] >= 1
     assert data["versions"]["numba"]
-    assert all((tmp_path / "out" / run["file"]).is_file() for run in data["runs"])
+    assert len((tmp_path / "out" / "runs.csv").read_text().splitlines()) == 1 + data["runs"] == 3
 
 
 @pytest.mark.end_to_end

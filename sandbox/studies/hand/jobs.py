@@ -6,7 +6,7 @@ import hashlib
 import itertools
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from itertools import islice
 from typing import Any
@@ -140,8 +140,3 @@ def _ending(session: Session) -> str:
 def _failing(session: Session) -> list[str]:
     """The checks of the scene that fail."""
     return [f"{c.name}: {c.measured}" for c in session.checks() if c.holds is False]
-
-
-def as_line(row: Mapping[str, Any], key: str) -> str:
-    """A finished run as a line of the file that they are kept in."""
-    return json.dumps({"key": key, **row}, ensure_ascii=False) + "\n"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,11 +10,11 @@ from pathlib import Path
 
 from core.warmup import compile_kernels
 from sandbox.bars import bar_options
-from sandbox.interrupts import deferred
 from sandbox.lessons import tours
 from sandbox.studies.common.folder import machine, write_text
+from sandbox.studies.common.kept import keep, read
 from sandbox.studies.common.pool import Pool, stopping
-from sandbox.studies.hand.jobs import Job, Row, as_line, carry_out
+from sandbox.studies.hand.jobs import Job, Row, carry_out
 from sandbox.studies.hand.report import as_json, as_markdown, as_table
 from scenes import registry
 from scenes.scene import HAND_STRENGTH, STRONGEST, Ingredients
@@ -103,7 +102,7 @@ def study(
     began = time.perf_counter()
     wanted = {job.key(): job for job in (all_jobs(quick) if chosen is None else chosen)}
     kept = folder / KEPT
-    rows = {key: row for key, row in _read(kept).items() if key in wanted}
+    rows = {key: row for key, row in read(kept).items() if key in wanted}
     found, failures = len(rows), list[str]()
     missing = [job for key, job in wanted.items() if key not in rows]
     try:
@@ -179,8 +178,7 @@ def implied(job: Job, rows: Iterable[Row]) -> Row | None:
 
 def _keep(row: Row, job: Job, rows: dict[str, Row], kept: Path) -> None:
     rows[job.key()] = row
-    with deferred(), kept.open("a", encoding="utf-8") as file:
-        file.write(as_line(row, job.key()))
+    keep(kept, job.key(), row)
 
 
 def _carry_out(job: Job) -> Row:
@@ -199,19 +197,3 @@ def _compile() -> None:
             friction=each.friction,
             gravity=each.gravity,
         )
-
-
-def _read(path: Path) -> dict[str, Row]:
-    """Runs that an interrupted study has left, by key; a damaged line is done again."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, ValueError):
-        return {}
-    found = {}
-    for line in lines:
-        try:
-            row = json.loads(line)
-            found[str(row.pop("key"))] = row
-        except (ValueError, KeyError, TypeError, AttributeError):
-            continue
-    return found

@@ -1,4 +1,4 @@
-"""A claim of the paper, the runs that it takes to measure it, and what was found."""
+"""A sentence of the paper, taken apart into what it asserts; the runs that it takes to measure that, and what was found."""
 
 from __future__ import annotations
 
@@ -10,9 +10,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.arrays import Floats
+from sandbox.studies.common.statistics import (
+    FAILS,
+    HOLDS,
+    OPEN,
+    Demand,
+    Estimate,
+    Exact,
+    Ratio,
+    Student,
+    pair,
+    verdicts,
+)
 from sandbox.studies.paper.runs import Request, Result
 
-SURE = 2.0  # standard errors that a difference must exceed to be counted as one
+NOT_MEASURED = "not measured"
+VERDICTS = (HOLDS, FAILS, OPEN, NOT_MEASURED)
+# What a part of a sentence can be about.
+ASPECTS = ("direction", "factor", "trend", "collapse", "share", "value")
 
 
 @dataclass(frozen=True)
@@ -39,11 +54,6 @@ class Measured:
         """Standard deviation over seeds, or None of a single one."""
         return float(np.std(self.values, ddof=1)) if len(self.values) > 1 else None
 
-    @property
-    def error(self) -> float:
-        """Standard error of the mean; 0 of a single value, which is then no matter of chance."""
-        return (self.spread or 0.0) / math.sqrt(len(self.values))
-
     def __str__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
         if self.spread is None:
@@ -52,19 +62,103 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Finding:
-    """What was measured, and whether the claim holds. ``holds`` is None where it could not be measured."""
+class Threshold:
+    """What a quantity must be, and why just that. Written down before the seeds that judge were run."""
 
-    holds: bool | None
-    decided_by: str  # the number that decides, and what it had to be
+    demand: Demand
+    reason: str
+
+    def __str__(self) -> str:
+        low, high = self.demand.low, self.demand.high
+        if math.isfinite(low) and math.isfinite(high):
+            return f"between {number(low)} and {number(high)}"
+        return f"above {number(low)}" if math.isfinite(low) else f"below {number(high)}"
+
+
+# Thresholds that many parts share.
+MORE = Threshold(Demand(1.0), "a direction: the words say more, not how much")
+LESS = Threshold(Demand(high=1.0), "a direction: the words say less, not how much")
+MUCH = Threshold(Demand(2.0), "“much” is read as a factor of two at least")
+TWICE = Threshold(
+    Demand(1.5, 2.0 / 0.75),
+    "“twice” is read as two within a factor of 4/3: beyond that one would say half as much again, or three times",
+)
+SAME = Threshold(
+    Demand(0.75, 1.0 / 0.75),
+    "“collapse”, “almost the same” are read as 1 within a factor of 4/3: hardly seen in the paper's plots, and less than the "
+    "least factor that it calls a difference",
+)
+RISES = Threshold(Demand(0.0), "a direction: it is there, or not")
+FALLS = Threshold(Demand(high=0.0), "a direction: it is there, or not")
+SUBLINEAR = Threshold(Demand(high=1.0), "the exponent of a straight line is 1")
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What runs say about a quantity."""
+
+    estimate: Estimate
     measured: tuple[Measured, ...] = ()
-    remark: str = ""  # what else a reader should know: above all why a claim fails
+    remark: str = ""
+
+
+Measure = Callable[[Sequence[Result]], Reading]
+
+
+@dataclass(frozen=True)
+class Variation:
+    """The same quantity under another condition, which the verdict may hang on."""
+
+    condition: str
+    measure: Measure
+
+
+@dataclass(frozen=True)
+class Part:
+    """One thing that a sentence asserts."""
+
+    aspect: str  # one of ``ASPECTS``
+    says: str  # in plain words
+    quantity: str  # that decides
+    threshold: Threshold
+    measure: Measure
+    variations: tuple[Variation, ...] = ()
+
+
+@dataclass(frozen=True)
+class Varied:
+    """What a variation came to."""
+
+    condition: str
+    reading: Reading | None
+    why: str = ""  # there is none
+
+    def contradicts(self, demand: Demand) -> bool:
+        """Whether its 95 % interval lies wholly where the statement does not hold."""
+        if self.reading is None:
+            return False
+        low, high = self.reading.estimate.interval()
+        return high <= demand.low or low >= demand.high
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found about a part. ``p`` is corrected for the number of verdicts once ``settle`` has seen all of them."""
+
+    part: Part
+    reading: Reading | None
+    verdict: str
+    p: float | None = None
+    why: str = ""  # it was not measured, or not established
+    varied: tuple[Varied, ...] = ()
 
     @property
-    def verdict(self) -> str:
-        """In words."""
-        words = {True: "holds", False: "does not hold", None: "not measured"}
-        return words[self.holds]
+    def decided_by(self) -> str:
+        """The number that decides, with its interval, and what it had to be."""
+        if self.reading is None:
+            return self.why
+        what = f"{self.part.quantity}: {with_interval(self.reading.estimate)}, must be {self.part.threshold}"
+        return f"{what}; {self.why}" if self.why else what
 
 
 @dataclass(frozen=True)
@@ -103,18 +197,21 @@ class Figure:
 
 @dataclass(frozen=True)
 class Claim:
-    """What the paper says, and how it is put to the test. ``runs`` is asked whether to be quick."""
+    """A sentence of the paper, and how it is put to the test. ``runs`` is asked whether to be quick."""
 
     name: str
     source: str  # the paper's figure or appendix
     words: str  # the paper's
     runs: Callable[[bool], Sequence[Request]]
-    judge: Callable[[Sequence[Result]], Finding]
+    parts: tuple[Part, ...]
     figures: tuple[Figure, ...] = field(default=())
-    bears_short_runs: bool = False  # ``judge`` knows what to do with runs that ended early
+    bears_short_runs: bool = False  # it knows what to do with runs that ended early
 
-    def find(self, results: Sequence[Result]) -> Finding:
-        """Judge, unless a run has failed or ended early. ``results`` are those of ``runs``, in any order."""
+    def find(self, results: Sequence[Result]) -> list[Finding]:
+        """Measure each part, unless a run has failed or ended early. ``results`` are those of ``runs``, in its order.
+
+        Verdicts are open until ``settle`` has seen those of the whole study.
+        """
         failed = [
             result
             for result in results
@@ -123,18 +220,47 @@ class Claim:
         if failed:
             first = failed[0].request
             which = f"{first.scene}, {first.packing}, seed {first.seed}"
-            return Finding(
-                None,
-                f"{len(failed)} of {len(results)} runs failed, the first ({which}): {failed[0].trouble}",
-            )
-        try:
-            return self.judge(results)
-        except Unmeasurable as why:
-            return Finding(None, str(why))
+            why = f"{len(failed)} of {len(results)} runs failed, the first ({which}): {failed[0].trouble}"
+            return [Finding(part, None, NOT_MEASURED, why=why) for part in self.parts]
+        return [_measured(part, results) for part in self.parts]
 
 
 class Unmeasurable(Exception):
     """The runs went well and yet do not say what is asked."""
+
+
+def _measured(part: Part, results: Sequence[Result]) -> Finding:
+    varied = []
+    for variation in part.variations:
+        try:
+            varied.append(Varied(variation.condition, variation.measure(results)))
+        except Unmeasurable as why:
+            varied.append(Varied(variation.condition, None, str(why)))
+    try:
+        return Finding(part, part.measure(results), OPEN, varied=tuple(varied))
+    except Unmeasurable as reason:
+        return Finding(part, None, NOT_MEASURED, why=str(reason), varied=tuple(varied))
+
+
+def settle(findings: Sequence[Finding]) -> list[Finding]:
+    """Verdicts of all parts of a study together: wrong in any of them at most once in twenty studies (Holm).
+
+    What a variation contradicts hangs on it, and is not established, whatever the p-value.
+    """
+    known = [(f.reading.estimate, f.part.threshold.demand) for f in findings if f.reading]
+    decided = iter(verdicts(known))
+    settled = []
+    for finding in findings:
+        if finding.reading is None:
+            settled.append(finding)
+            continue
+        verdict, p = next(decided)
+        why = ""
+        against = [v for v in finding.varied if v.contradicts(finding.part.threshold.demand)]
+        if verdict == HOLDS and against:
+            verdict, why = OPEN, f"with {against[0].condition} it is otherwise"
+        settled.append(Finding(finding.part, finding.reading, verdict, p, why, finding.varied))
+    return settled
 
 
 # Arithmetic that claims share.
@@ -142,8 +268,13 @@ class Unmeasurable(Exception):
 
 def over_seeds(results: Sequence[Result], value: Callable[[Result], float]) -> Floats:
     """A number of each run (S,), in the order of seeds."""
+    return np.array([v for _, v in by_seed(results, value)], dtype=np.float64)
+
+
+def by_seed(results: Sequence[Result], value: Callable[[Result], float]) -> list[tuple[int, float]]:
+    """(seed, number) of each run, in the order of seeds."""
     ordered = sorted(results, key=lambda result: result.request.seed)
-    return np.array([value(result) for result in ordered], dtype=np.float64)
+    return [(result.request.seed, value(result)) for result in ordered]
 
 
 def of_kind(results: Sequence[Result], kind: str) -> list[Result]:
@@ -151,25 +282,38 @@ def of_kind(results: Sequence[Result], kind: str) -> list[Result]:
     return [result for result in results if result.request.packing == kind]
 
 
-def where(results: Sequence[Result], name: str, value: object) -> list[Result]:
-    """The runs with that value of a setting that they name."""
-    return [r for r in results if dict(r.request.settings).get(name) == value]
-
-
-def ratio(above: Measured, below: Measured) -> tuple[float, float]:
-    """Ratio of two means, and its standard error by propagation."""
-    if below.mean == 0.0:
-        raise Unmeasurable(f"{below.what} is 0: no ratio can be taken")
-    value = above.mean / below.mean
-    relative = [
-        measured.error / measured.mean if measured.mean else 0.0 for measured in (above, below)
+def where(results: Sequence[Result], **settings: object) -> list[Result]:
+    """The runs with those values of settings that they name."""
+    return [
+        r
+        for r in results
+        if all(dict(r.request.settings).get(name) == value for name, value in settings.items())
     ]
-    return value, abs(value) * math.hypot(*relative)
 
 
-def surely_above(value: float, error: float, bound: float) -> bool:
-    """Whether ``value`` exceeds ``bound`` by more than chance."""
-    return value - SURE * error > bound
+def ratio(
+    above: Measured,
+    below: Measured,
+    rows: tuple[Sequence[tuple[int, float]], ...],
+    remark: str = "",
+) -> Reading:
+    """Ratio of two means, seed by seed: one seed gives both kinds the same sizes in the same places."""
+    one, other = pair(*rows)
+    if not len(one):
+        raise Unmeasurable(f"no seed has both {above.what} and {below.what}")
+    if not float(np.mean(other)) > 0.0:
+        raise Unmeasurable(f"{below.what} is not above 0: no ratio can be taken")
+    return Reading(Ratio.of(one, other), (above, below), remark)
+
+
+def mean_of(measured: Measured, remark: str = "") -> Reading:
+    """The mean over seeds."""
+    return Reading(Student.mean(measured.values), (measured,), remark)
+
+
+def exactly(value: float, *measured: Measured, remark: str = "") -> Reading:
+    """A number that is no matter of chance."""
+    return Reading(Exact(value), measured, remark)
 
 
 def cross(x: Floats, y: Floats, at: float) -> float:
@@ -182,6 +326,16 @@ def cross(x: Floats, y: Floats, at: float) -> float:
         return float(y[0])
     share = (at - x[k - 1]) / (x[k] - x[k - 1])
     return float(y[k - 1] + share * (y[k] - y[k - 1]))
+
+
+def with_interval(estimate: Estimate) -> str:
+    """Value and 95 % interval, for people."""
+    if isinstance(estimate, Exact):
+        return number(estimate.value)
+    low, high = estimate.interval()
+    if not (math.isfinite(low) and math.isfinite(high)):
+        return f"{number(estimate.value)} (no interval)"
+    return f"{number(estimate.value)} ({number(low)} to {number(high)})"
 
 
 def number(value: float, digits: int = 3) -> str:

@@ -8,22 +8,24 @@ import numpy as np
 
 from core.arrays import Floats
 from core.material import from_paper
+from sandbox.studies.common.statistics import Demand
 from sandbox.studies.paper.claims import (
     Claim,
     Figure,
-    Finding,
     Line,
     Measured,
     Panel,
+    Part,
+    Reading,
+    Threshold,
     cross,
+    exactly,
     number,
     where,
 )
+from sandbox.studies.paper.conditions import LAMBDAS, MU
 from sandbox.studies.paper.runs import Request, Result
 
-# λ and μ of the paper.
-LAMBDAS = (0.01, 0.1, 1.0, 10.0, 100.0)
-MU = 0.1
 RADII = (0.5, 1.0, 2.0)
 SMALL_ERROR = 0.01
 ASPECTS = (1.05, 1.1, 1.2, 1.4)
@@ -77,24 +79,23 @@ def all_sizes(quick: bool) -> list[Request]:
     return [_grain(lam) for lam in LAMBDAS] + [_grain(0.1, r) for r in RADII if r != 1.0]
 
 
-def judge_poisson_ratio(results: Sequence[Result]) -> Finding:
-    """Extrapolated to no strain from the first two increments, for λ = 0.01 … 100."""
+def poisson_error(results: Sequence[Result]) -> Reading:
+    """Largest difference to (λ − 1)/(λ + 1), extrapolated to no strain from the first two increments, for λ = 0.01 … 100."""
     rows = []
-    for result in sorted(where(results, "radius", 1.0), key=_poisson_ratio):
+    for result in sorted(where(results, radius=1.0), key=_poisson_ratio):
         ratio = _strain_ratio(result)
         rows.append((_poisson_ratio(result), float(2.0 * ratio[0] - ratio[1]), float(ratio[-1])))
     worst = max(abs(measured - nu) for nu, measured, _ in rows)
     far = ", ".join(f"{number(nu, 2)} → {number(late)}" for nu, _, late in rows)
-    return Finding(
-        worst < SMALL_ERROR,
-        f"largest difference to (λ − 1)/(λ + 1): {number(worst, 2)}, must be < {SMALL_ERROR}",
-        tuple(Measured.of(f"for ν = {number(nu, 2)}:", "", measured) for nu, measured, _ in rows),
-        f"at 20 % compression the ratio of strains has moved: {far}",
+    return exactly(
+        worst,
+        *(Measured.of(f"for ν = {number(nu, 2)}:", "", measured) for nu, measured, _ in rows),
+        remark=f"at 20 % compression the ratio of strains has moved: {far}",
     )
 
 
-def judge_stiffness(results: Sequence[Result]) -> Finding:
-    """Slope of the force at small compression, for all λ and sizes, in units of k."""
+def stiffness_error(results: Sequence[Result]) -> Reading:
+    """Largest difference to 1 of the slope of the force at small compression, for all λ and sizes [k]."""
     slopes = []
     for result in results:
         compression = _compression(result)
@@ -105,21 +106,20 @@ def judge_stiffness(results: Sequence[Result]) -> Finding:
     worst = float(np.max(np.abs(np.array(slopes) - 1.0)))
     tenth = {
         round(_poisson_ratio(r), 2): cross(_compression(r), _force(r), 0.1)
-        for r in where(results, "radius", 1.0)
+        for r in where(results, radius=1.0)
     }
     apart = ", ".join(f"{number(f)} for ν = {number(nu, 2)}" for nu, f in sorted(tenth.items()))
-    return Finding(
-        worst < SMALL_ERROR,
-        f"stiffness differs from k by {number(worst, 2)} k at most, must be < {SMALL_ERROR} k",
-        (Measured("stiffness", "k", (float(np.mean(slopes)),)),),
-        f"force over k times width at 10 % compression: {apart}",
+    return exactly(
+        worst,
+        Measured("stiffness", "k", (float(np.mean(slopes)),)),
+        remark=f"force over k times width at 10 % compression: {apart}",
     )
 
 
 def single_grain_panels(results: Sequence[Result]) -> list[Panel]:
     """Fig. 1f, and the appendix' figure of a single grain."""
     strains, ratios, forces, sizes = [], [], [], []
-    for result in sorted(where(results, "radius", 1.0), key=_poisson_ratio):
+    for result in sorted(where(results, radius=1.0), key=_poisson_ratio):
         nu = _poisson_ratio(result)
         label, kind = f"ν = {number(nu, 2)}", _colour(nu)
         dashed = abs(nu) > 0.9
@@ -175,8 +175,11 @@ def _early(result: Result) -> Floats:
     return early
 
 
-def judge_overlap_factor(results: Sequence[Result]) -> Finding:
-    """Terms in ε² of the contact distance over b, as multiples of (1 − cos 4θ)/16, extrapolated to ε → 0 at θ = 45°."""
+def overlap_factor(results: Sequence[Result]) -> Reading:
+    """Exact over approximate term in ε² of the contact distance over b, at θ = 45°.
+
+    As multiples of (1 − cos 4θ)/16, extrapolated to ε → 0.
+    """
     two = sorted(results, key=lambda r: float(r.request.of("aspect")))[:2]
     terms, stretches = [], []
     for result in two:
@@ -195,29 +198,29 @@ def judge_overlap_factor(results: Sequence[Result]) -> Finding:
         stretches.append(stretch)
     low, high = (np.array(row) for row in terms)
     exact, model = low - (high - low) * stretches[0] / (stretches[1] - stretches[0])
-    factor = float(exact / model)
-    return Finding(
-        abs(factor - WITHIN) < 0.5,
-        f"exact over approximate term: {number(factor)}, must be {WITHIN:g}",
-        (
-            Measured.of("exact term", "", exact),
-            Measured.of("approximate term", "", model),
-        ),
-        "in units of ε²(1 − cos 4θ)/16; the paper has 5 and 1 because it takes a support function for a polar radius, and its "
-        "first-order term is half of the true one",
+    return exactly(
+        float(exact / model),
+        Measured.of("exact term", "", exact),
+        Measured.of("approximate term", "", model),
+        remark="in units of ε²(1 − cos 4θ)/16; the paper has 5 and 1 because it takes a support function for a polar radius, "
+        "and its first-order term is half of the true one",
     )
 
 
-def judge_overlap_start(results: Sequence[Result]) -> Finding:
-    """Never late, and early by little at the aspect ratios of compressed grains."""
-    latest = min(float(np.min(_early(result))) for result in results)
+def overlap_late(results: Sequence[Result]) -> Reading:
+    """By how much contact starts late, at most [diameters]; negative where it is always early."""
+    late = max(-float(np.min(_early(result))) for result in results)
+    return exactly(late, Measured.of("late by, at most", "diameters", late))
+
+
+def overlap_early(results: Sequence[Result]) -> Reading:
+    """By how much contact starts early at aspect ratio 1.2, at most [% of a diameter]."""
     most = {float(r.request.of("aspect")): 100.0 * float(np.max(_early(r))) for r in results}
     words = ", ".join(f"{number(early, 2)} % at {aspect:g}" for aspect, early in most.items())
-    return Finding(
-        latest > -1e-9 and most[1.2] < 2.0,
-        f"never late, and early by {number(most[1.2])} % of a diameter at aspect ratio 1.2, must be < 2 %",
-        (Measured.of("early by", "% of a diameter", most[1.2]),),
-        f"worst tilt of two parallel ellipses: {words}; mirror images touch exactly where the model says",
+    return exactly(
+        most[1.2],
+        Measured.of("early by", "% of a diameter", most[1.2]),
+        remark=f"worst tilt of two parallel ellipses: {words}; mirror images touch exactly where the model says",
     )
 
 
@@ -260,23 +263,22 @@ def rows(quick: bool) -> list[Request]:
     ]
 
 
-def judge_row(results: Sequence[Result]) -> Finding:
-    """Regular: a force from the first increment. Auxetic: none at all."""
-    regular, auxetic = (
-        next(r for r in results if r.request.packing == kind) for kind in ("regular", "auxetic")
-    )
-    first = float(regular.column("force")[1] / regular.column("down")[1])
-    last = float(regular.column("force")[-1] / regular.column("down")[-1])
+def _row(results: Sequence[Result], kind: str) -> Result:
+    return next(r for r in results if r.request.packing == kind)
+
+
+def row_pushes(results: Sequence[Result]) -> Reading:
+    """Regular grains: sideways over downward force at the first increment."""
+    regular = _row(results, "regular")
+    share = regular.column("force")[1:] / regular.column("down")[1:]
+    return exactly(float(share[0]), Measured.of("regular, at the end", "", share[-1]))
+
+
+def row_stays(results: Sequence[Result]) -> Reading:
+    """Auxetic grains: largest sideways force over the largest downward force."""
+    auxetic = _row(results, "auxetic")
     none = float(np.max(np.abs(auxetic.column("force") / np.max(auxetic.column("down")))))
-    return Finding(
-        first > 0.1 and none < 1e-6,
-        f"sideways over downward force: regular {number(first)} at the first increment, must be > 0.1; "
-        f"auxetic {number(none)} at most, must be < 1e-6",
-        (
-            Measured.of("regular, at the end", "", last),
-            Measured.of("auxetic, at most", "", none),
-        ),
-    )
+    return exactly(none, Measured.of("auxetic, at most", "", none))
 
 
 def row_panels(results: Sequence[Result]) -> list[Panel]:
@@ -288,6 +290,10 @@ def row_panels(results: Sequence[Result]) -> list[Panel]:
     return [Panel("A row of grains", "compression [%]", "force sideways [k R]", lines)]
 
 
+EXACTLY = Threshold(
+    Demand(high=SMALL_ERROR),
+    "nothing here is a matter of chance; what is left is the extrapolation to no strain, some 1e-4",
+)
 CLAIMS = (
     Claim(
         "poisson_ratio",
@@ -295,7 +301,15 @@ CLAIMS = (
         "by changing the area and shape stiffnesses […] we can tune the particle's Poisson's ratio from +1 to −1; "
         "at small strain ν = (λ − 1)/(λ + 1)",
         all_sizes,
-        judge_poisson_ratio,
+        (
+            Part(
+                "value",
+                "ν = (λ − 1)/(λ + 1) at small strain",
+                "largest difference over λ = 0.01 … 100",
+                EXACTLY,
+                poisson_error,
+            ),
+        ),
         (Figure("fig-1f-single-grain", "Single grain (Fig. 1f)", single_grain_panels),),
     ),
     Claim(
@@ -304,21 +318,55 @@ CLAIMS = (
         "with the normalization all the particles have the same linear response, regardless of its Poisson's ratio or the "
         "particles initial size",
         all_sizes,
-        judge_stiffness,
+        (
+            Part(
+                "value",
+                "the same stiffness for every ν and size",
+                "largest difference to k, over k",
+                EXACTLY,
+                stiffness_error,
+            ),
+        ),
     ),
     Claim(
         "overlap_factor",
         "appendix “Ellipse Overlap Approximation”",
         "equal […] up until the second order in ε, where there is a difference by a factor of 5",
         ellipses,
-        judge_overlap_factor,
+        (
+            Part(
+                "factor",
+                "a difference by a factor of 5",
+                "exact over approximate term in ε²",
+                Threshold(Demand(WITHIN - 0.5, WITHIN + 0.5), "5, to a digit"),
+                overlap_factor,
+            ),
+        ),
     ),
     Claim(
         "overlap_start",
         "appendix “Ellipse Overlap Approximation”",
         "at least in this test case the used approximation is well behaved",
         ellipses,
-        judge_overlap_start,
+        (
+            Part(
+                "direction",
+                "contact is never late",
+                "late by at most [diameters]",
+                Threshold(Demand(high=1e-9), "rounding"),
+                overlap_late,
+            ),
+            Part(
+                "value",
+                "and early by little at the aspect ratios of compressed grains",
+                "early at aspect ratio 1.2 by [% of a diameter]",
+                Threshold(
+                    Demand(high=2.0),
+                    "the share 2/C of a compression that overlap takes is as large",
+                ),
+                overlap_early,
+            ),
+        ),
         (Figure("fig-overlap", "Overlap approximation (appendix)", overlap_panels),),
     ),
     Claim(
@@ -327,7 +375,22 @@ CLAIMS = (
         "[regular:] a force in the transverse direction is building up starting from the first moment of compression; "
         "[auxetic:] no force chain can emerge in the transverse direction",
         rows,
-        judge_row,
+        (
+            Part(
+                "direction",
+                "regular grains push sideways from the first moment",
+                "sideways over downward force at the first increment, regular",
+                Threshold(Demand(0.1), "far above the tolerance of the relaxation, 1e-3 at most"),
+                row_pushes,
+            ),
+            Part(
+                "direction",
+                "auxetic grains never do",
+                "sideways over downward force at most, auxetic",
+                Threshold(Demand(high=1e-6), "none, but for rounding"),
+                row_stays,
+            ),
+        ),
         (Figure("fig-poisson-effect", "Poisson effect (appendix)", row_panels),),
     ),
 )

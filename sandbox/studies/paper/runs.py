@@ -21,11 +21,12 @@ from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.studies.common.pool import Pool, Stopped, stopping
+from sandbox.studies.hand import jobs as hand_jobs
 from sandbox.studies.paper.probes import PROBES
 from scenes.parameter import Value
-from scenes.scene import Ingredients
+from scenes.scene import HAND_STRENGTH, Ingredients
 
-DATA_VERSION = 1  # of what a run writes down; raise it when probes change
+DATA_VERSION = 2  # of what a run writes down; raise it when probes change
 SLICE = 400  # force evaluations between two looks at whether to stop: a fraction of a second
 # Reasons to stop a relaxation after which the scripted drive does not go on.
 BROKEN = {
@@ -33,6 +34,7 @@ BROKEN = {
     "not finite": "the numbers blew up",
     "sunk": "a grain was pressed into a wall",
 }
+HAND = "hand"  # instead of a probe: a scripted hand of ``study hand``, until it locks
 LOST = "the process that ran it ended without a word"
 
 
@@ -80,6 +82,13 @@ class Result:
     failure: str | None = None
 
     @property
+    def increments(self) -> int:
+        """How many there were."""
+        if "increments" in self.lists:
+            return int(self.lists["increments"][0])
+        return max(len(self.columns.get("stroke", ())) - 1, 0)
+
+    @property
     def trouble(self) -> str | None:
         """Why the run is not what was asked for, or None."""
         return self.failure or self.ended
@@ -97,6 +106,8 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
             raise Stopped
 
     began = time.process_time()
+    if request.probe == HAND:
+        return _push(request, check, began)
     session = Session(request.scene, request.packing, request.seed, dict(request.settings))
     steps = request.steps or session.scene.steps(session.settings)
     session.build(check)
@@ -116,6 +127,23 @@ def execute(request: Request, stopping: Callable[[], bool] = lambda: False) -> R
         float(np.mean(reasons == "converged")) if len(reasons) else 1.0,
         time.process_time() - began,
         ended,
+    )
+
+
+def _push(request: Request, check: Callable[[], None], began: float) -> Result:
+    """One run of the study of the hand, of which the strength alone is set."""
+    strength = float(request.of(HAND_STRENGTH))
+    job = hand_jobs.Job("push", request.scene, request.packing, request.seed, strength)
+    row = hand_jobs.push(job, check)
+    numbers = ("way", "out", "peak_force", "mean_force", "increments")
+    lists = {name: [float(row[name])] for name in numbers}
+    lists["locked"] = [float(row["ended"] == "locked")]
+    return Result(
+        request,
+        lists=lists,
+        converged=1.0 - row["unconverged"] / max(row["increments"], 1),
+        seconds=time.process_time() - began,
+        ended=BROKEN.get(row["ended"]),
     )
 
 

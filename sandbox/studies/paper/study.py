@@ -9,24 +9,30 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from core.errors import InputError, did_you_mean
 from sandbox.bars import bar_options
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.paper import bulk as paper_bulk
-from sandbox.studies.paper import flow as paper_flow
 from sandbox.studies.paper import grains as paper_grains
+from sandbox.studies.paper import hopper as paper_hopper
+from sandbox.studies.paper import intruder as paper_intruder
+from sandbox.studies.paper import quakes as paper_quakes
 from sandbox.studies.paper import shear as paper_shear
-from sandbox.studies.paper.claims import Claim, Finding
-from sandbox.studies.paper.report import Judged, as_json, as_markdown
+from sandbox.studies.paper.claims import Claim, settle
+from sandbox.studies.paper.cost import estimate
+from sandbox.studies.paper.report import Judged, as_json, as_markdown, as_table
 from sandbox.studies.paper.runs import Request, Result, Store, run_all
 
 CLAIMS: tuple[Claim, ...] = (
     *paper_grains.CLAIMS,
     *paper_bulk.CLAIMS,
     *paper_shear.CLAIMS,
-    *paper_flow.CLAIMS,
+    *paper_quakes.CLAIMS,
+    *paper_intruder.CLAIMS,
+    *paper_hopper.CLAIMS,
 )
 
 
@@ -79,16 +85,33 @@ def study(
         _run(missing, found, store, jobs, results)
     except KeyboardInterrupt:
         return Outcome((), len(results), _failures(results), interrupted=True)
-    judged = tuple(
-        Judged(claim, claim.find([results[request] for request in plans[claim.name]]))
-        for claim in chosen
-    )
+    judged = judge(chosen, plans, results)
     seconds = time.perf_counter() - began
     _draw(chosen, plans, results, folder)
     about = {"quick": quick, "seconds": round(seconds, 1), "runs_from_before": found, **machine()}
-    write_text(folder / "results.json", as_json(judged, list(results.values()), about))
-    write_text(folder / "claims.md", as_markdown(judged, list(results.values()), about))
+    used: dict[Request, list[str]] = {}
+    for claim in chosen:
+        for request in plans[claim.name]:
+            used.setdefault(request, []).append(claim.name)
+    rows = [results[request] for request in used]
+    write_text(folder / "runs.csv", as_table(rows, used))
+    write_text(folder / "results.json", as_json(judged, rows, about))
+    write_text(folder / "claims.md", as_markdown(judged, rows, about, estimate(rows)))
     return Outcome(judged, len(results), _failures(results), interrupted=False)
+
+
+def judge(
+    claims: Sequence[Claim],
+    plans: dict[str, tuple[Request, ...]],
+    results: dict[Request, Result],
+) -> tuple[Judged, ...]:
+    """Verdicts on all parts of all claims together, since each is corrected for the number of all."""
+    found = [claim.find([results[request] for request in plans[claim.name]]) for claim in claims]
+    settled = iter(settle([finding for findings in found for finding in findings]))
+    return tuple(
+        Judged(claim, tuple(islice(settled, len(findings))))
+        for claim, findings in zip(claims, found, strict=True)
+    )
 
 
 def _run(
@@ -138,8 +161,3 @@ def _draw(
 
 def _failures(results: dict[Request, Result]) -> int:
     return sum(result.failure is not None for result in results.values())
-
-
-def summary(finding: Finding) -> str:
-    """One line for a terminal."""
-    return f"{finding.verdict:<13}  {finding.decided_by}"
