@@ -159,13 +159,12 @@ CELLS = {
 @pytest.mark.parametrize("size", [0.0, 0.003, 0.3])
 @pytest.mark.parametrize("seed", range(4))
 def test_twin(seed: int, size: float) -> None:
-    """Nearly all contacts stick at 0.003 R, most slide at 0.3 R; there some were open before, and some have opened since."""
+    """Nearly all contacts stick at 0.003 R, a third slides at 0.3 R; there some were open before, and some have opened since."""
     made = case(seed, size, move=max(size, 0.02))
     contacts = assert_twins(made)
     sliding = np.mean([one.sliding for one in contacts])
     known = set(made.friction.remembered())
-    print(sliding, [one.gap > 0.0 for one in contacts].count(True))
-    assert sliding < 0.3 if size < 0.1 else sliding > 0.5
+    assert sliding < 0.1 if size < 0.1 else 0.2 < sliding < 0.8
     if size > 0.1:
         assert any(one.gap > 0.0 for one in contacts)
         assert known - {one.labels for one in contacts}
@@ -390,9 +389,7 @@ def test_an_ellipse_that_turns_on_a_plate_counts_its_turn_once(share: float) -> 
             moved = packing.copy()
             if both:
                 turn_shapes(moved.state, angle)
-            made = Case(
-                packing, world, placed, Friction(10.0, 1), moved, np.full(1, angle), placed
-            )
+            made = Case(packing, world, placed, Friction(10.0, 1), moved, np.full(1, angle), placed)
             expected = angle * (h if both else float(a * b) / h)
             assert slips_of(made) == pytest.approx([expected], abs=angle**2)
     if share:
@@ -521,7 +518,12 @@ def again(relaxation: Relaxation) -> Floats:
     """Forces (6, N) of the state as it is, after new lists have been made for it."""
     relaxation._relist()
     fire.evaluate(
-        relaxation._minimizer, relaxation._box, relaxation._rigid, relaxation.friction_terms, None, None
+        relaxation._minimizer,
+        relaxation._box,
+        relaxation._rigid,
+        relaxation.friction_terms,
+        None,
+        None,
     )
     return relaxation.forces()
 
@@ -557,12 +559,21 @@ def follow(made: Case, path: Floats, *, commit: bool) -> Floats:
     return np.array(found)
 
 
-def round_the_end(steps: int, *, commit: bool, polygon: bool) -> Floats:
-    """A tilted ellipse dragged along a side, over its corner and down, and pressed on all the while."""
+def round_the_end(steps: int, *, commit: bool, polygon: bool, meets: bool = False) -> Floats:
+    """A tilted ellipse dragged along a side, over its corner and down, and pressed on all the while.
+
+    ``meets``: two other plates end where this one does, below it.
+    """
     body = RigidBody("plate", segments=[(-6.0, 0.0, 0.0, 0.0, 0.3)])
     if polygon:
-        body = RigidBody("plate", polygons=[(((-6.0, -4.0), (0.0, -4.0), (0.0, 0.0), (-6.0, 0.0)), 0.3)])
-    world = RigidWorld([body])
+        body = RigidBody(
+            "plate", polygons=[(((-6.0, -4.0), (0.0, -4.0), (0.0, 0.0), (-6.0, 0.0)), 0.3)]
+        )
+    others = [
+        RigidBody(name, segments=[(0.0, 0.0, x, -4.0, 0.3)])
+        for name, x in (("under", -3.0), ("below", -2.0))
+    ]
+    world = RigidWorld([*others, body] if meets else [body])
     packing = Packing([-0.3], [1.2], 1.0, 0.3, 50.0)
     packing.set_axes(1.1, 0.95, 0.6)
     s = np.linspace(-0.3, 0.9 if polygon else 0.5, steps)
@@ -582,7 +593,16 @@ def test_no_jump_at_a_corner(commit: bool, polygon: bool) -> None:
         np.abs(np.diff(round_the_end(steps, commit=commit, polygon=polygon), axis=0)).max()
         for steps in (60, 120)
     ]
-    assert most[0] < 2.0
+    assert most[0] < 4.0
+    assert most[1] == pytest.approx(0.5 * most[0], rel=0.15)
+
+
+def test_no_jump_at_a_corner_where_other_plates_end() -> None:
+    """The corner is that of its own plate, however many there are in that place."""
+    most = [
+        np.abs(np.diff(round_the_end(steps, commit=True, polygon=False, meets=True), axis=0)).max()
+        for steps in (60, 120)
+    ]
     assert most[1] == pytest.approx(0.5 * most[0], rel=0.15)
 
 
@@ -765,11 +785,10 @@ def box_of_grains(count: int = 25) -> tuple[Packing, RigidWorld]:
 CAREFUL = Settings(step=0.05, tolerance=1e-4, max_iterations=20_000)
 
 
-def sheared(slices: list[int], skin: float = 0.3) -> Quasistatic:
+def sheared(slices: list[int]) -> Quasistatic:
     """The plate goes forth by 0.25 R; every increment cut into slices of so many iterations."""
     packing, world = box_of_grains()
-    settings = Settings(step=0.05, tolerance=1e-4, skin=skin, max_iterations=20_000)
-    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
+    engine = Quasistatic(System(packing, world, CAREFUL, Friction(MU, len(packing))))
     for _ in range(6):
         engine.begin({"plate": (0.25, world["plate"].position[1])})
         turn = 0
@@ -788,20 +807,49 @@ def test_slices_change_nothing() -> None:
         assert cut.friction.hash() == whole.friction.hash()
 
 
-def test_memory_survives_new_lists() -> None:
-    """A skin of a hundredth rebuilds the lists again and again; the path is then rounded otherwise, and stays the same.
+def sheared_on(step: float, skin: float) -> tuple[Quasistatic, int]:
+    """A settled packing sheared in five increments of ``step``: the engine, and how often new lists came in the middle of one."""
+    packing, world = box_of_grains()
+    settings = Settings(step=0.05, tolerance=1e-6, max_iterations=20_000)
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
+    renewed = 0
+    for k in range(7):
+        targets = {"plate": (0.25, world["plate"].position[1])} if k > 1 else {}
+        if k == 2:
+            engine.system.solver = replace(settings, step=step, skin=skin)
+        engine.begin(targets)
+        relaxation = engine.relaxation
+        assert relaxation is not None
+        first = None
+        while engine.relax(1) is None:
+            first = relaxation.friction_terms if first is None else first
+            if relaxation.friction_terms is not first:
+                first = relaxation.friction_terms
+                renewed += k > 1
+    return engine, renewed
 
-    Both ways end within the tolerance of one equilibrium: 1e-4 of a mean contact force of 0.08 k R, over a softest
-    stiffness of some 0.1 k, is 1e-4 R.
+
+def test_memory_survives_new_lists() -> None:
+    """A skin of a hundredth takes other lists, and the answer is the same as long as none are made in the middle of an increment.
+
+    Where they are, what contacts hold by then is remembered, and so is what has slid on the minimiser's way: the answer then is
+    another equilibrium, near by. Measured in steps of 0.005 R: 2e-4 R, and 2e-3 of the forces.
     """
-    seldom, often = sheared([20_000]), sheared([20_000], skin=0.003)
-    assert np.abs(seldom.packing.state - often.packing.state).max() < 1e-4
-    assert seldom.friction is not None
-    assert often.friction is not None
-    mine, theirs = seldom.friction.remembered(), often.friction.remembered()
+    seldom, often = sheared_on(0.001, 0.3), sheared_on(0.001, 0.003)
+    assert seldom[1] == often[1] == 0
+    assert np.abs(seldom[0].packing.state - often[0].packing.state).max() < 1e-10
+    for engine in (seldom[0], often[0]):
+        assert engine.friction is not None
+    mine, theirs = (e.friction.remembered() for e, _ in (seldom, often) if e.friction is not None)
     assert set(mine) == set(theirs)
     assert max(abs(v) for v in mine.values()) > 1e-3
-    assert max(abs(mine[k] - theirs[k]) for k in mine) < 1e-4
+    assert max(abs(mine[k] - theirs[k]) for k in mine) < 1e-10
+    seldom, often = sheared_on(0.005, 0.3), sheared_on(0.005, 0.003)
+    assert seldom[1] == 0
+    assert often[1] > 0
+    assert np.abs(seldom[0].packing.state - often[0].packing.state).max() < 1e-3
+    scale = np.abs(seldom[0].reactions).max()
+    assert np.abs(seldom[0].reactions - often[0].reactions).max() < 0.01 * scale
 
 
 @pytest.mark.parametrize("reason", [StopReason.COLLAPSED, StopReason.NOT_FINITE])
