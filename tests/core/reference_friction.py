@@ -98,9 +98,7 @@ def frictional_contacts(
         d0 = nearest_image(before.packing.box, then[j].x - then[i].x, then[j].y - then[i].y)
         gap = max(0.0, math.hypot(*d0) - _reach(then[i], d0) - _reach(then[j], d0))
         labels = (int(min(label[i], label[j])), int(max(label[i], label[j])))
-        levers = [
-            now[k].a * now[k].b / _reach(now[k], n) - 0.5 * contact.overlap for k in (i, j)
-        ]
+        levers = [now[k].a * now[k].b / _reach(now[k], n) - 0.5 * contact.overlap for k in (i, j)]
         u = before.memory.get(labels, 0.0) - t[0] * (d[0] - d0[0]) - t[1] * (d[1] - d0[1])
         u += levers[0] * turned[i] + levers[1] * turned[j]
         u += change(i, n, np.array(t)) + change(j, n, np.array(t))
@@ -121,9 +119,7 @@ def frictional_contacts(
             gap, memory = _at_origin(int(label[i]), then[i], m, before)
             h = contact.slopes.h
             x, y = image.x - row[1], image.y - row[2]
-            wx, wy = nearest_image(
-                packing.box, x - (old.x - old_row[1]), y - (old.y - old_row[2])
-            )
+            wx, wy = nearest_image(packing.box, x - (old.x - old_row[1]), y - (old.y - old_row[2]))
             # The body's own material, at the point where the force acts, goes with the first point of the primitive.
             carried = before.turn[m] * np.array([-(y + h * n[1]), x + h * n[0]])
             lever = grain.a * grain.b / h
@@ -150,7 +146,10 @@ def friction_energy_and_forces(
     for contact in frictional_contacts(packing, turned, primitives, before):
         pull, t = contact.pull, np.array([-contact.n[1], contact.n[0]])
         energy += 0.5 * pull**2 / contact.stiffness
-        for k, sign, lever in ((contact.i, 1.0, contact.lever_i), (contact.j, -1.0, contact.lever_j)):
+        for k, sign, lever in (
+            (contact.i, 1.0, contact.lever_i),
+            (contact.j, -1.0, contact.lever_j),
+        ):
             if k < 0:
                 continue
             forces[:2, k] -= sign * pull * t
@@ -158,7 +157,9 @@ def friction_energy_and_forces(
             e = touching_direction(grains[k], contact.n)
             # U = a m m + b w w, and turning it by dθ adds (a − b)(m w + w m) dθ.
             theta = grains[k].theta
-            m, w = np.array([[math.cos(theta), math.sin(theta)], [-math.sin(theta), math.cos(theta)]])
+            m, w = np.array(
+                [[math.cos(theta), math.sin(theta)], [-math.sin(theta), math.cos(theta)]]
+            )
             by_theta = ((t @ m) * (w @ e) + (t @ w) * (m @ e)) / (grains[k].a + grains[k].b)
             forces[2:, k] -= pull * np.array([by_theta, (t @ m) * (m @ e), (t @ w) * (w @ e)])
     return energy, forces, torque
@@ -213,7 +214,9 @@ def _at_origin(label: int, grain: Ellipse, m: int, before: Before) -> tuple[floa
     meets = [k for k in range(len(rows)) if _adjoin(rows[m], rows[k])]
     memory = before.memory.get((label, -1 - m))
     if memory is None:
-        remembered = [before.memory[label, -1 - k] for k in meets if (label, -1 - k) in before.memory]
+        remembered = [
+            before.memory[label, -1 - k] for k in meets if (label, -1 - k) in before.memory
+        ]
         memory = remembered[-1] if remembered else 0.0
     box = before.packing.box
     gaps = [_distance(beside(grain, rows[k], box), rows[k]) for k in (m, *meets)]
@@ -238,7 +241,11 @@ def _distance(grain: Ellipse, row: Floats) -> float:
     kind, x0, y0, ux, uy, wx, wy, radius = map(float, row)
     point = (x0, y0)
     if kind == DISC:
-        return math.dist((grain.x, grain.y), point) - radius - _reach(grain, (grain.x - x0, grain.y - y0))
+        return (
+            math.dist((grain.x, grain.y), point)
+            - radius
+            - _reach(grain, (grain.x - x0, grain.y - y0))
+        )
     if kind == EDGE:
         if _past(grain, (x0, y0), (-ux, -uy)) <= 0.0 and _past(grain, (wx, wy), (ux, uy)) <= 0.0:
             n = _facing_normal(grain, point, (ux, uy))
