@@ -97,9 +97,7 @@ class Relaxation:
         self._rigid = None
         if primitives is not None and len(primitives):
             self._rigid = rigid_contacts.allocate(endless(primitives, packing.box), max(count, 1))
-        self._friction = (
-            None if friction is None else FrictionalContacts(friction, self._rigid)
-        )
+        self._friction = None if friction is None else FrictionalContacts(friction, self._rigid)
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
