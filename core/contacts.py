@@ -16,6 +16,7 @@ them into the forces on (p, q1, q2).
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -204,7 +205,7 @@ def add_contact_forces(
     coefficient = None if friction is None else friction.coefficient
     change = None if friction is None else friction.change
     marks = None if friction is None else friction.marks
-    sums = None if friction is None else friction.sums
+    sums: Any = None if friction is None else friction.sums
     for t in range(width.shape[0]):
         last = min(width[t], end)
         if last <= begin:

@@ -1,9 +1,9 @@
 """Coulomb friction: the coefficient, every grain's spin, and the slips that contacts remember from one increment to the next.
 
-During an increment the slip u of a contact counts how far its surfaces have moved along each other, and its force is k_t u, cut to
-± μ times the normal force: implicit Euler of Coulomb's law with a spring. Cap, tangent and the set of contacts are those of the
-state itself (``slip``). Afterwards the clipped slip is remembered by the pair of grains, so that it survives new neighbour lists and
-grains that leave. New contacts begin at 0.
+During an increment the slip u of a contact counts how far its surfaces have moved along each other, and its force is k_t u, cut
+to ± μ times the normal force: implicit Euler of Coulomb's law with a spring. Cap, tangent and the set of contacts are those of
+the state itself (``slip``). Afterwards the clipped slip is remembered by the pair of grains, so that it survives new neighbour
+lists and grains that leave. New contacts begin at 0.
 
 A scene without friction has none of this: no spin, no memory, and its kernels are compiled without the term.
 """
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.errors import InputError
-from core.frictional_contacts import BODY, GRAIN, FrictionForces, Origin
+from core.frictional_contacts import BODY, GRAIN, Origin
 from core.packing import Packing
 
 Indices = NDArray[np.int64]
@@ -119,6 +119,6 @@ class Friction:
         )
 
     def end(self, keys: Indices, slips: Floats, turned: Floats) -> None:
-        """Remember what the contacts hold, as ``FrictionalContacts.end`` says, and that grains turned by ``turned`` (N,) [rad]."""
+        """Remember what contacts hold, as ``FrictionalContacts.end`` says, and that grains turned by ``turned`` (N,) [rad]."""
         self._keys, self._slips = keys, slips
         self.spin += turned

@@ -1,8 +1,8 @@
 """The frictional contacts of one relaxation: which pairs may touch, where their slips are counted from, and what they hold.
 
-Order of operations. An increment stores where grains and bodies are (``Origin``); then bodies move, and grains are sent where they
-will probably go. When the first neighbour lists are made, every listed pair becomes a candidate with its gap, branch vector and
-remembered slip at the origin. At each later list what every contact holds is *committed*: the clipped slip is remembered, and
+Order of operations. An increment stores where grains and bodies are (``Origin``); then bodies move, and grains are sent where
+they will probably go. When the first neighbour lists are made, every listed pair becomes a candidate with its gap, branch vector
+and remembered slip at the origin. At each later list what every contact holds is *committed*: the clipped slip is remembered, and
 counted anew from here. Without that a contact that slides far would pull towards where it was at the start, and drive the
 minimiser round. When the relaxation has ended, contacts that touch remember their clipped slips.
 
@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.fire import Minimizer
+from core.marks import lay_out, measure, slips
 from core.observables import GrainContacts, RigidContacts
 from core.packing import MAX_LABEL, PeriodicBox
 from core.rigid_contacts import EDGE, VERTEX, RigidTerms
-from core.marks import lay_out, measure, slips
 from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms, prepare_friction
 
 Indices = NDArray[np.int64]

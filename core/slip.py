@@ -1,4 +1,4 @@
-"""How far the surfaces of two grains, or of a grain and a body, have slipped, and the force that comes of it. MODEL.md, section 7.
+"""How far the surfaces of two grains, or of a grain and a body, have slipped, and the force of that. MODEL.md, section 7.
 
 For each contact, with d = x_j − x_i, the unit normal n from grain i to grain j, t = n turned left, the support function h and the
 overlap Δ as they are NOW, and a zero for where things were at the origin of slips (``frictional_contacts``):

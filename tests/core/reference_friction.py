@@ -68,13 +68,13 @@ def stretch(grain: Ellipse) -> Floats:
     """U = R(θ) diag(a, b) R(−θ), (2, 2) [R]."""
     c, s = math.cos(grain.theta), math.sin(grain.theta)
     turn = np.array([[c, -s], [s, c]])
-    return turn @ np.diag([grain.a, grain.b]) @ turn.T
+    return np.asarray(turn @ np.diag([grain.a, grain.b]) @ turn.T, dtype=np.float64)
 
 
 def touching_direction(grain: Ellipse, n: Vector) -> Floats:
     """e = U n / h: the material point that touches along n, as a unit vector of the undeformed grain (2,)."""
     along = stretch(grain) @ n
-    return np.array(along / np.hypot(*along))
+    return np.asarray(along / np.hypot(*along), dtype=np.float64)
 
 
 def frictional_contacts(
@@ -85,7 +85,9 @@ def frictional_contacts(
     label = packing.label
 
     def change(i: int, n: Vector, t: Vector) -> float:
-        return float(t @ (stretch(now[i]) - stretch(then[i])) @ touching_direction(now[i], n))
+        return float(
+            np.array(t) @ (stretch(now[i]) - stretch(then[i])) @ touching_direction(now[i], n)
+        )
 
     found = []
     for i, j in sorted(near_pairs(packing, 0.0)):
@@ -101,7 +103,7 @@ def frictional_contacts(
         levers = [now[k].a * now[k].b / _reach(now[k], n) - 0.5 * contact.overlap for k in (i, j)]
         u = before.memory.get(labels, 0.0) - t[0] * (d[0] - d0[0]) - t[1] * (d[1] - d0[1])
         u += levers[0] * turned[i] + levers[1] * turned[j]
-        u += change(i, n, np.array(t)) + change(j, n, np.array(t))
+        u += change(i, n, t) + change(j, n, t)
         arm = contact.slopes.h - 0.5 * contact.overlap  # half way between the two outlines
         found.append(
             _tangential(i, j, labels, n, contact, gap, u, levers, arm, now[i], before.coefficient)
@@ -124,7 +126,7 @@ def frictional_contacts(
             carried = before.turn[m] * np.array([-(y + h * n[1]), x + h * n[0]])
             lever = grain.a * grain.b / h
             u = memory + t[0] * (wx - carried[0]) + t[1] * (wy - carried[1])
-            u += lever * turned[i] + change(i, n, np.array(t))
+            u += lever * turned[i] + change(i, n, t)
             labels = (int(label[i]), -1 - m)
             found.append(
                 _tangential(

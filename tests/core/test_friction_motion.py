@@ -103,8 +103,9 @@ def test_a_block_sticks(share: float, mu: float, weight: float) -> None:
 def test_a_block_slides(share: float, mu: float, weight: float) -> None:
     """Beyond it nothing holds the block: no equilibrium is found, and a force is left over.
 
-    The force of friction is μ f_n, with the f_n of this very state to rounding; and as no equilibrium is found, that is the weight
-    only as nearly as the block has come to rest up and down: to 4e-7. Once it was the f_n of the settled block, good to 1e-7.
+    The force of friction is μ f_n, with the f_n of this very state to rounding; and as no equilibrium is found, that is the
+    weight only as nearly as the block has come to rest up and down: to 4e-7. Once it was the f_n of the settled block, good to
+    1e-7.
     """
     moved, increment = pulled(share * mu * weight, weight, mu)
     assert increment.report.reason is StopReason.ITERATION_LIMIT
@@ -358,9 +359,9 @@ def curved_path_exactly() -> float:
 def test_a_curved_path_is_exact(steps: int) -> None:
     """In few increments as in many: cap and tangent are those of the state, and what the block still holds at the end is its cap.
 
-    An increment in which the block turns back counts the way that is left of it; that is forgotten where it slides again. Measured:
-    4e-8 k R of 0.105 from Coulomb's law at 4 to 128 increments, which is the error of the seventh-degree fit. With caps that lagged
-    it was of first order, and more than 1e-4 at 512.
+    An increment in which the block turns back counts the way that is left of it; that is forgotten where it slides again.
+    Measured: 4e-8 k R of 0.105 from Coulomb's law at 4 to 128 increments, which is the error of the seventh-degree fit. With caps
+    that lagged it was of first order, and more than 1e-4 at 512.
     """
     assert curved_path(steps) == pytest.approx(curved_path_exactly(), abs=2e-7)
 
@@ -368,8 +369,8 @@ def test_a_curved_path_is_exact(steps: int) -> None:
 def test_order_of_convergence_of_an_assembly() -> None:
     """Nine grains sheared by a lid as far as no contact opens or closes, in 8 to 64 increments.
 
-    Looked at are the force on the lid, and the place and spin of the grain in the middle. The order is the first: measured 0.96 to
-    1.02. What is left at 64 increments is 1e-8 of the force, no more than the tolerance, so that 128 would tell nothing of it.
+    Looked at are the force on the lid, and the place and spin of the grain in the middle. The order is the first: measured 0.96
+    to 1.02. What is left at 64 increments is 1e-7 of the force; at 128 the tolerance would be seen in it.
     """
     values, touching = [], set()
     for steps in (8, 16, 32, 64):

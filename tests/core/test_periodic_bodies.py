@@ -290,7 +290,10 @@ def held(packing: Packing) -> list[int]:
 
 
 def test_frictional_contacts_across_the_edge_slip_like_others() -> None:
-    """A cell sheared with friction: where grains are stored changes nothing, also not at contacts through the edges."""
+    """A cell sheared with friction: where grains are stored changes nothing, also not at contacts through the edges.
+
+    The slips are some 6e-4 R, less than where the shapes did not count: grains that go with the cell slip less.
+    """
     random = np.random.default_rng(9)
     packing = dense()
     up, across = random.integers(-2, 3, (2, len(packing)))
@@ -311,7 +314,7 @@ def test_frictional_contacts_across_the_edge_slip_like_others() -> None:
         memories.append(friction.remembered())
     plain, other = memories
     assert set(plain) == set(other)
-    assert max(abs(v) for v in plain.values()) > 3e-4  # caps of overlaps of some 1e-3 R
+    assert max(abs(v) for v in plain.values()) > 5e-4
     assert max(abs(plain[k] - other[k]) for k in plain) < 1e-6
 
 

@@ -1,4 +1,8 @@
-"""Jamming of a two-dimensional hopper under gravity, against the experiment of To, Lai and Pak."""
+"""Hoppers under gravity: jamming against the experiment of To, Lai and Pak, and whether the outflow is one of the grains at all.
+
+An increment is a step of slow motion, in which a free grain sinks by ``fall``. What leaves before an arch forms must not depend
+on that, nor on anything else that only says how the path is cut into steps.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +21,9 @@ from sandbox.studies.classics.case import (
     seeds,
     seeds_of,
     where,
+    within,
 )
-from sandbox.studies.common.statistics import Apart, Demand, Share
+from sandbox.studies.common.statistics import Apart, Demand, Ratio, Share
 from scenes.parameter import Value
 
 WIDTHS = (2.0, 3.0, 4.0, 5.0)  # of the orifice, in diameters
@@ -35,12 +40,16 @@ SETTINGS: tuple[tuple[str, Value], ...] = (
 SLICE = 400  # force evaluations between two looks at whether to stop
 LONGEST = 4000  # increments
 PAUSE = 120  # increments in which nothing leaves, and nothing moves: it is jammed
+FALLS = (0.1, 0.05, 0.02)  # [R]
+DRAINS = 200  # a setting
+OUTFLOW_WIDTH = 3.0  # diameters
 LEFT = 0.02  # of the grains may stay on the sides of an empty hopper
 
 
 def _drain(job: Job, check: Asking) -> Numbers:
     """Let a hopper run until it is empty or has come to rest."""
-    settings = {**dict(SETTINGS), "orifice": job.of("width")}
+    asked = dict(job.settings)
+    settings = {**dict(SETTINGS), "orifice": asked.pop("width"), **asked}
     session = Session("gravity_hopper", "regular", job.seed, settings)
     session.build()
     session.submit(Protocol(True))
@@ -105,6 +114,26 @@ def _told(rows: Sequence[Row]) -> str:
     return f"{len(jammed)} of {len(rows)}, {never or 'none'} of them at once"
 
 
+def _judge_outflow(rows: Sequence[Row]) -> list[Check]:
+    """Grains out by ``fall``, of the same packings: a ratio of means, paired by seeds."""
+    out = {fall: [row["out"] for row in where(rows, fall=fall)] for fall in FALLS}
+    means = ", ".join(f"{sum(out[fall]) / len(out[fall]):.1f} at {fall:g} R" for fall in FALLS)
+    reason = (
+        "the outflow of single drains scatters by about as much as it is, so that of 200 pairs a quarter is told for sure"
+    )
+    return [
+        Check(
+            f"outflow at fall {fall:g} R over that at {FALLS[1]:g} R ({means})",
+            Ratio.of(out[fall], out[FALLS[1]]),
+            "1: the same grains leave, however finely the path is cut",
+            within(1.0, 0.25),
+            reason,
+            seeds_of(rows),
+        )
+        for fall in (FALLS[0], FALLS[2])
+    ]
+
+
 CASES = (
     Case(
         "jamming",
@@ -120,5 +149,17 @@ CASES = (
         _judge,
         "quasistatic grains have no momentum that could break an arch, and sink as in honey: where J falls may be shifted, the "
         "more so the wider the orifice",
+    ),
+    Case(
+        "outflow",
+        "Outflow under gravity, and how finely the path is cut",
+        "no closed form: what leaves until an arch forms, 200 single-sized grains, an orifice of 3 diameters",
+        lambda quick: [
+            Job("outflow", (("width", OUTFLOW_WIDTH), ("fall", fall)), seed)
+            for fall in FALLS
+            for seed in seeds(DRAINS, quick)
+        ],
+        _drain,
+        _judge_outflow,
     ),
 )
