@@ -138,7 +138,10 @@ def _run(
                     file=sys.stderr,
                 )
 
-        run_all(missing, store, jobs, done, lambda: bar.set_description_str("compiling".ljust(32)))
+        def compiling() -> None:
+            bar.set_description_str("compiling".ljust(32))
+
+        run_all(missing, store, jobs, done, compiling, results.values())
 
 
 def _draw(
