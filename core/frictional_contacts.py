@@ -263,11 +263,19 @@ class FrictionalContacts:
 
 
 def _corners(primitives: Floats) -> Indices:
-    """For each primitive (M, 2): the edges that a vertex is the end of; -1 where there is none."""
+    """For each primitive (M, 2): the edges that a vertex lies between; -1 where there is none.
+
+    Others may end in the same place: an edge and its vertex have radius and direction in common.
+    """
     edges = np.flatnonzero(primitives[:, 0] == EDGE)
+    rows = primitives[edges]
+    starts = np.column_stack([rows[:, 1:3], -rows[:, 3:5], rows[:, 7]])
+    ends = np.column_stack([rows[:, 5:7], rows[:, 3:5], rows[:, 7]])
     found = np.full((len(primitives), 2), -1)
     for v in np.flatnonzero(primitives[:, 0] == VERTEX):
-        ends = primitives[edges][:, [[1, 2], [5, 6]]] - primitives[v, 1:3]
-        meets = edges[(np.abs(ends).max(axis=2) < _SAME_POINT).any(axis=1)][:2]
-        found[v, : len(meets)] = meets
+        for side, first in enumerate((3, 5)):
+            row = primitives[v]
+            end = np.concatenate([row[1:3], row[first : first + 2], row[7:]])
+            near = np.minimum(np.abs(starts - end).max(axis=1), np.abs(ends - end).max(axis=1))
+            found[v, side] = next(iter(edges[near < _SAME_POINT]), -1)
     return found

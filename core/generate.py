@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.arrays import Floats
+from core.endless import endless
 from core.errors import InputError
 from core.jit import kernel
 from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
@@ -30,6 +31,8 @@ SIZE_RATIO = 1.4
 PLACED_FRACTION = (
     0.38  # packing fraction of the random placement; random addition of discs saturates at 0.547
 )
+MOST_DENSE = 1.5  # packing fraction that can be asked for
+NO_ROOM = "the grains do not fit: lower the packing fraction or enlarge the container"
 GROWTH = 0.02  # largest relative growth of the radii between two relaxations
 ROUGH, FINE = 1e-1, 1e-3  # tolerances while growing, and at the end
 KINDS = ("regular", "auxetic", "mixed")
@@ -37,15 +40,21 @@ KINDS = ("regular", "auxetic", "mixed")
 
 @dataclass(frozen=True)
 class Recipe:
-    """Which grains: kind of packing, sizes and material. Large grains have radius 1 [R]; each kind has its Poisson's ratio."""
+    """Which grains: kind of packing, sizes and material. Large grains have radius 1 [R]; each kind has its Poisson's ratio.
+
+    Sizes: large and small ones, ``size_ratio`` 1 for grains that are all alike; with ``size_width`` the radii of each of the two
+    are spread evenly, the largest of all having 1 [R].
+    """
 
     kind: str = "mixed"
     auxetic_fraction: float = 0.5  # of the grains, in a mixed packing
     regular_poisson_ratio: float = DEFAULT_POISSON_RATIO
     auxetic_poisson_ratio: float = -DEFAULT_POISSON_RATIO
     contact_stiffness: float = DEFAULT_CONTACT_STIFFNESS
+    auxetic_contact_stiffness: float | None = None  # None: as that of the regular ones
     size_ratio: float = SIZE_RATIO  # large over small radius
     small_fraction: float = 0.5  # of the grains
+    size_width: float = 0.0  # radii of a size are spread from 1 − this to 1 of it
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -54,19 +63,37 @@ class Recipe:
             raise InputError("fractions of grains must lie between 0 and 1")
         if not self.size_ratio >= 1.0:
             raise InputError("the size ratio is large over small radius: it must be at least 1")
+        if not 0.0 <= self.size_width < 1.0:
+            raise InputError("the width of the sizes must be at least 0 and less than 1")
+
+    def stiffness(self, poisson_ratio: Floats) -> Floats:
+        """Contact stiffness [k] of grains (N,), whose kind is the sign of Poisson's ratio."""
+        other = self.auxetic_contact_stiffness
+        auxetic = self.contact_stiffness if other is None else other
+        return np.where(np.signbit(poisson_ratio), auxetic, self.contact_stiffness)
 
     def mean_area(self) -> float:
         """Mean rest area of a grain [R²]."""
-        return math.pi * (1.0 - self.small_fraction + self.small_fraction / self.size_ratio**2)
+        spread = 1.0 - self.size_width + self.size_width**2 / 3.0
+        area = math.pi * (1.0 - self.small_fraction + self.small_fraction / self.size_ratio**2)
+        return area * spread
+
+    @property
+    def smallest(self) -> float:
+        """Radius that no grain falls below [R]."""
+        return (1.0 - self.size_width) / (self.size_ratio if self.small_fraction > 0.0 else 1.0)
 
     def grains(self, count: int, random: np.random.Generator) -> tuple[Floats, Floats]:
         """Rest radii [R] and Poisson's ratios of ``count`` grains, (count,) each, in random order.
 
-        Numbers of each size, and of each kind within each size, are exact to one grain.
+        Numbers of each size, and of each kind within each size, are exact to one grain; so is how radii are spread.
         """
-        small = round(count * self.small_fraction)
+        small = round(count * self.small_fraction) if self.size_ratio > 1.0 else 0
         radius = np.ones(count)
         radius[:small] = 1.0 / self.size_ratio
+        if self.size_width > 0.0:
+            for size in (radius[:small], radius[small:]):
+                size *= 1.0 - self.size_width * (np.arange(len(size)) + 0.5) / max(len(size), 1)
         share = {"regular": 0.0, "auxetic": 1.0, "mixed": self.auxetic_fraction}[self.kind]
         # Counting up by ``share`` spreads the auxetic grains evenly over both sizes.
         steps = np.floor(np.arange(1, count + 1) * share + 1e-9) - np.floor(
@@ -103,10 +130,11 @@ def pack(
         raise InputError("the seed must be 0 or a positive whole number")
     if packing_fraction is None:
         packing_fraction = 0.84
-    if not 0.01 <= packing_fraction <= 1.5:
-        raise InputError("the packing fraction must lie between 0.01 and 1.5")
+    if not 0.01 <= packing_fraction <= MOST_DENSE:
+        raise InputError(f"the packing fraction must lie between 0.01 and {MOST_DENSE}")
     if count is not None and count < 0:
         raise InputError("the number of grains must be 0 or more")
+    counted = count is not None
     random = np.random.default_rng(seed)
     world = world or RigidWorld()
     if outline is None and box is None:
@@ -122,18 +150,18 @@ def pack(
     else:
         area = open_area(outline, world, box)
     fraction = float(np.pi * np.sum(radius**2)) / area
+    if counted and fraction > MOST_DENSE:
+        raise InputError(NO_ROOM)
     scale = min(1.0, math.sqrt(PLACED_FRACTION / max(fraction, 1e-9)))
     x, y = _place(radius * scale, outline, world, box, random)
-    packing = Packing(x, y, radius, nu, recipe.contact_stiffness, box=box)
+    packing = Packing(x, y, radius, nu, recipe.stiffness(nu), box=box)
     primitives, _ = world.primitives()
     _grow(packing, primitives, scale, tolerance, progress)
     if target_pressure is not None:
         packing = _to_pressure(packing, primitives, area, target_pressure, tolerance)
     # A region that is periodic in one direction has both: the outline is then one period of it.
     if outline is not None and not np.all(inside(outline, *packing.folded())):
-        raise InputError(
-            "the grains do not fit: lower the packing fraction or enlarge the container"
-        )
+        raise InputError(NO_ROOM)
     return packing
 
 
@@ -181,12 +209,13 @@ def _place(
     else:
         assert box is not None
         low, high = np.zeros(2), np.array([box.width, box.height])
-    primitives, _ = world.primitives()
+    primitives = endless(world.primitives()[0], box)
     reach = 2.0 * float(radius.max(initial=1.0))
     columns = max(1, int((high[0] - low[0]) / reach))
     rows = max(1, int((high[1] - low[1]) / reach))
-    cells = np.full((columns * rows, 16), -1, dtype=np.int64)
-    filled = np.zeros(columns * rows, dtype=np.int64)
+    # The grains of a cell are a chain, the latest first: however many small ones lie where a large one would have room.
+    latest = np.full(columns * rows, -1, dtype=np.int64)
+    before = np.full(len(radius), -1, dtype=np.int64)
     x, y = np.zeros(len(radius)), np.zeros(len(radius))
     box_form = None if box is None else box.kernel_form()
     placed, tries = 0, 0
@@ -195,9 +224,7 @@ def _place(
         batch = max(1000, 4 * len(radius))
         tries += batch
         if tries > 4000 * len(radius) + 200_000:
-            raise InputError(
-                "the grains do not fit: lower the packing fraction or enlarge the container"
-            )
+            raise InputError(NO_ROOM)
         candidates = low + random.random((batch, 2)) * (high - low)
         if outline is not None:
             candidates = candidates[inside(outline, candidates[:, 0], candidates[:, 1])]
@@ -218,8 +245,8 @@ def _place(
             placed,
             candidates,
             primitives,
-            cells,
-            filled,
+            latest,
+            before,
             columns,
             rows,
             low,
@@ -238,8 +265,8 @@ def _add(
     placed,
     candidates,
     primitives,
-    cells,
-    filled,
+    latest,
+    before,
     columns,
     rows,
     low,
@@ -280,18 +307,18 @@ def _add(
                 near_row = (row + dr) % rows
                 near_column = (column + dc) % columns
                 cell = near_row * columns + near_column
-                for k in range(filled[cell]):
-                    j = cells[cell, k]
+                j = latest[cell]
+                while free and j >= 0:
                     dx, dy = nearest(px - x[j], py - y[j], box)
                     apart = radius[i] + radius[j]
-                    if dx * dx + dy * dy < apart * apart:
-                        free = False
-        cell = row * columns + column
-        if free and filled[cell] < cells.shape[1]:
+                    free = dx * dx + dy * dy >= apart * apart
+                    j = before[j]
+        if free:
             x[i] = px
             y[i] = py
-            cells[cell, filled[cell]] = i
-            filled[cell] += 1
+            cell = row * columns + column
+            before[i] = latest[cell]
+            latest[cell] = i
             placed += 1
     return placed
 

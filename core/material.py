@@ -68,6 +68,12 @@ def from_paper(stiffness_ratio: ArrayLike, softness: ArrayLike) -> tuple[Floats,
     return (lam - 1.0) / (lam + 1.0), 2.0 + (lam + 1.0) ** 2 / (lam * mu)
 
 
+def contact_stiffness_of(poisson_ratio: ArrayLike, softness: ArrayLike) -> Floats:
+    """C [k] that gives grains of that Poisson's ratio the paper's μ: κ = C μ. Raises InputError unless μ is positive."""
+    nu = np.asarray(poisson_ratio, dtype=np.float64)
+    return from_paper((1.0 + nu) / (1.0 - nu), softness)[1]
+
+
 def to_paper(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> tuple[Floats, Floats]:
     """(Poisson's ratio, contact stiffness C) → (λ, μ) of the paper. Raises InputError when out of range."""
     check_material(poisson_ratio, contact_stiffness)

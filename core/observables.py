@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core import neighbors, rigid_contacts
 from core.arrays import Floats
 from core.contacts import grain_overlap
+from core.endless import endless
 from core.jit import kernel
 from core.packing import Packing
 
@@ -150,6 +151,7 @@ def grain_contacts(packing: Packing) -> GrainContacts:
 
 def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
+    primitives = endless(primitives, packing.box)
     rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
     box = None if packing.box is None else packing.box.kernel_form()
     while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0, box):

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from core import observables
 from core.arrays import Floats
 from core.coincidence import part_coincident
+from core.endless import endless
 from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodies
 from core.errors import InputError
 from core.friction import Friction
@@ -169,6 +170,7 @@ class Quasistatic:
             self._deep = deep_grains(self.packing, touched, self.system.solver.step)
         self._placement = self.world.placement()
         rows_then, owner = self.world.primitives()
+        rows_then = endless(rows_then, self.packing.box)
         self._move_bodies(targets)
         self._start, self._start_box = self.packing.state.copy(), self.packing.box
         origin = None
@@ -186,9 +188,9 @@ class Quasistatic:
             self._predict()
         primitives, _ = self.world.primitives()
         if self.system.relaxes:
-            self._through = passed_faces(
-                touched, self._start, self.packing.state, rows_then, primitives
-            )
+            rows_now = endless(primitives, self.packing.box)
+            ways = self._start, self.packing.state, rows_then, rows_now
+            self._through = passed_faces(touched, *ways)
         solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(

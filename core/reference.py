@@ -8,6 +8,7 @@ of ``primitives``: no smooth chart, no double angles, no cells, no Newton steps.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -130,7 +131,9 @@ def grain_contact(packing: Packing, grains: list[Ellipse], i: int, j: int) -> Co
     return Contact(overlap, f, (dx / r, dy / r), force, mine, (math.nan, math.nan))
 
 
-def rigid_contact(stiffness: float, grain: Ellipse, row: Floats) -> Contact | None:
+def rigid_contact(
+    stiffness: float, grain: Ellipse, row: Floats, has_ends: bool = True
+) -> Contact | None:
     """Contact of a grain with one row of ``primitives``, or None (7, 8, 9)."""
     kind, x0, y0, ux, uy, wx, wy, radius = map(float, row)
     if kind == DISC:
@@ -144,7 +147,8 @@ def rigid_contact(stiffness: float, grain: Ellipse, row: Floats) -> Contact | No
         force = _along_and_across(f, (dx / r, dy / r), -f * mine.by_alpha / r)
         return Contact(overlap, f, (dx / r, dy / r), force, mine, (x0, y0))
     if kind == EDGE:
-        if _past(grain, (x0, y0), (-ux, -uy)) > 0.0 or _past(grain, (wx, wy), (ux, uy)) > 0.0:
+        before, behind = _past(grain, (x0, y0), (-ux, -uy)), _past(grain, (wx, wy), (ux, uy))
+        if has_ends and max(before, behind) > 0.0:
             return None
         alpha = math.atan2(*_facing_normal(grain, (x0, y0), (ux, uy))[::-1])
     else:
@@ -175,6 +179,50 @@ def beside(grain: Ellipse, row: Floats, box: PeriodicBox | None) -> Ellipse:
     if math.isfinite(box.width):
         dx -= round(dx / box.width) * box.width
     return grain._replace(x=x + dx, y=y + dy)
+
+
+def periods(box: PeriodicBox | None) -> list[Vector]:
+    """The ways from the cell to the image beside it and to the nearest of those above it [R]."""
+    if box is None:
+        return []
+    beside_it = [(box.width, 0.0)] if math.isfinite(box.width) else []
+    if not math.isfinite(box.height):
+        return beside_it
+    shifts = [box.shift]
+    if beside_it:
+        turns = math.floor(box.shift / box.width)
+        shifts = [box.shift - turns * box.width, box.shift - (turns + 1) * box.width]
+    return [*beside_it, (min(shifts, key=abs), box.height)]
+
+
+def runs_around(row: Floats, box: PeriodicBox | None) -> bool:
+    """True for an edge along a periodic direction that is as long as the cell: it has no ends."""
+    way = row[5:7] - row[1:3]
+    return row[0] == EDGE and any(
+        abs(row[3] * vy - row[4] * vx) < 1e-9 and math.hypot(*way) > math.hypot(vx, vy) - 1e-9
+        for vx, vy in periods(box)
+    )
+
+
+def around_the_cell(primitives: Floats, box: PeriodicBox | None) -> dict[int, Floats]:
+    """The rows by number, without the vertices of edges that have no ends, and with one for two free ends that meet."""
+    ends = [
+        (end, row[7]) for row in primitives if runs_around(row, box) for end in (row[1:3], row[5:7])
+    ]
+    rows = {
+        m: row.copy()
+        for m, row in enumerate(primitives)
+        if row[0] in (EDGE, DISC)
+        or not any(math.dist(row[1:3], end) < 1e-9 and row[7] == radius for end, radius in ends)
+    }
+    free = [m for m, row in rows.items() if row[0] not in (EDGE, DISC) and not row[5:7].any()]
+    for vx, vy in periods(box):
+        for m, n in itertools.permutations(free, 2):
+            if m in rows and n in rows and rows[m][7] == rows[n][7]:
+                image = rows[m][1] + vx, rows[m][2] + vy
+                if math.dist(image, rows[n][1:3]) < 1e-9:
+                    rows[m][5:7] = rows.pop(n)[3:5]
+    return rows
 
 
 def _along_and_across(f: float, n: Vector, across: float) -> Vector:
@@ -237,12 +285,21 @@ def _contacts(
             contact = grain_contact(packing, grains, me, other)
             if contact is not None:
                 yield me, 0.5, contact
-    for row in () if primitives is None else primitives:
+    if primitives is not None:
+        yield from ((i, 1.0, c) for _, i, c in _with_bodies(packing, grains, primitives))
+
+
+def _with_bodies(
+    packing: Packing, grains: list[Ellipse], primitives: Floats
+) -> Iterator[tuple[int, int, Contact]]:
+    """(primitive, grain, contact) for every contact with a body that has a force."""
+    for m, row in around_the_cell(primitives, packing.box).items():
+        has_ends = not runs_around(row, packing.box)
         for i, grain in enumerate(grains):
             image = beside(grain, row, packing.box)
-            contact = rigid_contact(float(packing.contact_stiffness[i]), image, row)
+            contact = rigid_contact(float(packing.contact_stiffness[i]), image, row, has_ends)
             if contact is not None:
-                yield i, 1.0, contact
+                yield m, i, contact
 
 
 def energy_and_forces(packing: Packing, primitives: Floats | None = None) -> tuple[float, Floats]:
@@ -282,11 +339,7 @@ def to_smooth_chart(packing: Packing, forces: Floats) -> Floats:
 def reactions(packing: Packing, primitives: Floats) -> Floats:
     """Force of the grains on each primitive [k R], and torque about the origin [k R²], (M, 3)."""
     total = np.zeros((len(primitives), 3))
-    for m, row in enumerate(primitives):
-        for i, grain in enumerate(ellipses(packing)):
-            image = beside(grain, row, packing.box)
-            contact = rigid_contact(float(packing.contact_stiffness[i]), image, row)
-            if contact is not None:
-                (fx, fy), (x, y) = contact.force, contact.point
-                total[m] -= fx, fy, x * fy - y * fx
+    for m, _, contact in _with_bodies(packing, ellipses(packing), primitives):
+        (fx, fy), (x, y) = contact.force, contact.point
+        total[m] -= fx, fy, x * fy - y * fx
     return total

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import fire, neighbors, rigid_contacts
+from core.endless import endless
 from core.errors import InputError
 from core.friction import SPIN_MASS
 from core.frictional_contacts import FrictionalContacts, FrictionForces, Origin
@@ -21,6 +22,7 @@ from core.threads import running, share
 DEFAULT_TOLERANCE = 1e-2
 DEFAULT_FORCE_FLOOR = 1e-3
 DEFAULT_SKIN = 0.3
+SKIN_SPAN = 4.0  # of the smallest radius, where that is less than the largest: else small grains list far too many neighbours
 
 
 class StopReason(StrEnum):
@@ -94,10 +96,8 @@ class Relaxation:
         _check_box(packing, skin)
         self._rigid = None
         if primitives is not None and len(primitives):
-            self._rigid = rigid_contacts.allocate(primitives, max(count, 1))
-        self._friction = (
-            None if friction is None else FrictionalContacts(friction, self._rigid)
-        )
+            self._rigid = rigid_contacts.allocate(endless(primitives, packing.box), max(count, 1))
+        self._friction = None if friction is None else FrictionalContacts(friction, self._rigid)
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         self._through: set[tuple[int, int]] = set()
@@ -113,7 +113,7 @@ class Relaxation:
             force_floor=float(force_floor),
             dt_max=fire.DT_FACTOR / np.sqrt(stiffest),
             clamp=0.1 * smallest,
-            skin=skin * largest,
+            skin=skin * min(largest, SKIN_SPAN * smallest),
         )
         control = fire.fresh_control(self._limits.dt_max)
         if not count:

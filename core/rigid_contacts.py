@@ -173,7 +173,7 @@ def touch(primitives, m, x, y, s, u, v):
 def image(primitives, m, x, y, box):
     """The periodic image of a grain at (x, y) that is nearest to primitive m (for an edge: to its middle) [R].
 
-    A wall that runs along a periodic direction must reach beyond the cell by a grain's radius at both ends.
+    Of walls that run around the cell ``endless`` makes what lies beside that image.
     """
     if box is None:
         return x, y
@@ -288,9 +288,7 @@ def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigi
             ny = -ny
             ex = ((state[2, i] + state[3, i]) * nx + state[4, i] * ny) / h
             ey = (state[4, i] * nx + (state[2, i] - state[3, i]) * ny) / h
-            slip = body_slip(
-                nx, ny, overlap, h, rx, ry, ex, ey, change, i, marks, k, turn[m], box
-            )
+            slip = body_slip(nx, ny, overlap, h, rx, ry, ex, ey, change, i, marks, k, turn[m], box)
             limit = coefficient * overlap / TANGENTIAL_STIFFNESS
             slip = max(min(slip, limit), -limit)
             pull = TANGENTIAL_STIFFNESS * contact_stiffness[i] * slip

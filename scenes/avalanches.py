@@ -14,10 +14,10 @@ from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
-    MATERIAL,
     SOLVER,
     STRONGEST,
     Check,
@@ -31,8 +31,8 @@ from scenes.scene import (
     Track,
     Values,
     hand,
-    recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -63,7 +63,9 @@ class Avalanches(Scene):
         Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),
         Parameter("strain", 0.5, "", 0.01, 20.0, "shear strain of the scripted drive", live=True),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         # The shear stress is a small difference of large contact forces: at 1e-2 it is off by some per cent, and avalanches
         # come at the wrong strains. At 1e-3 one packing of four still took another way at once; 1e-4 costs 1.7 times as
         # much, less than a picture (`study accuracy`).
@@ -77,7 +79,7 @@ class Avalanches(Scene):
     def steps(self, settings: Values) -> int:
         # The cell is not built yet; under little pressure its packing fraction is near that of jamming, 0.84.
         side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
-        return max(1, round(float(settings["strain"]) * side / float(settings["step"])))
+        return max(1, round(float(settings["strain"]) * side / step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

@@ -9,10 +9,10 @@ from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
-    MATERIAL,
     SOLVER,
     STRONGEST,
     Check,
@@ -26,12 +26,13 @@ from scenes.scene import (
     Track,
     Values,
     hand,
-    recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
-ONSET = 1e-5  # of C: the pressure that counts as the onset of rigidity
+# The pressure [k] that counts as the onset of rigidity, whatever C: how far a grain is squeezed by it is set by k.
+ONSET = 5e-4
 MOST_STRAIN = 0.5  # volumetric strain at which a hand is stopped
 GRAB = 4.0  # radius of the handle [R]
 ISOSTATIC = 4.0  # contacts a grain that frictionless discs need in order not to move
@@ -61,7 +62,9 @@ class BiaxialPeriodic(Scene):
             live=True,
         ),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 
@@ -73,7 +76,7 @@ class BiaxialPeriodic(Scene):
         # The box at the onset is not built yet; frictionless discs jam at 0.84, and a step too many does no harm.
         side = math.sqrt(float(settings["grains"]) * recipe(settings, "mixed").mean_area() / 0.84)
         shrink = side * (1.0 - math.sqrt(1.0 - float(settings["strain"])))
-        return max(1, math.ceil(shrink / float(settings["step"])))
+        return max(1, math.ceil(shrink / step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None
@@ -83,7 +86,7 @@ class BiaxialPeriodic(Scene):
             seed=seed,
             count=int(settings["grains"]),
             packing_fraction=0.84,
-            target_pressure=ONSET * float(settings["contact_stiffness"]),
+            target_pressure=ONSET,
             tolerance=min(1e-3, float(settings["tolerance"])),
             progress=progress,
         )
@@ -148,7 +151,7 @@ def _never_floppy(setup: Setup, track: Track) -> Check:
     _, backbone = observables.coordination(setup.packing, contacts)
     pressure_now = float(track.force[-1])
     measured = f"Z = {backbone:.2f} at pressure {pressure_now:.3g} k"
-    if pressure_now < ONSET * float(setup.packing.contact_stiffness.mean()):
+    if pressure_now < ONSET:
         return Check(name, None, f"{measured}: it is not rigid")
     # A finite packing needs 2/N fewer, and a tolerance leaves some contacts open.
     return Check(name, backbone > ISOSTATIC - 0.1, measured)

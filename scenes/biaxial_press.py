@@ -12,14 +12,15 @@ import math
 import numpy as np
 
 from core import observables
-from core.generate import Progress, Recipe, pack
+from core.errors import InputError
+from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     Check,
     Curve,
@@ -30,13 +31,14 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
+    step,
 )
 
 FLOOR = 1.6  # thickness; the ends of the lid slide into it [R]
 LID = 0.8  # thickness [R]
 BRIM = 2.5  # of the floor above the corners at the sides [R]
+LEAST_SIDE = 4.0  # of the square: two large grains beside one another [R]
 DEEPEST = 0.6  # volumetric strain at which the lid stops
 
 
@@ -65,16 +67,22 @@ class BiaxialPress(Scene):
         ),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         hand(40.0),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
+
+    def validate(self, settings: Values) -> None:
+        if _square(settings) < LEAST_SIDE:
+            raise InputError("too few grains of these sizes for a press: raise grains")
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None
     ) -> Setup:
         grains = recipe(settings, packing)
         fraction = float(settings["packing_fraction"])
-        side = math.sqrt(float(settings["grains"]) * grains.mean_area() / fraction)
+        side = _square(settings)
         half = side / math.sqrt(2.0)
         outline: list[Point] = [(0.0, 0.0), (half, half), (0.0, 2.0 * half), (-half, half)]
         brim = half + BRIM
@@ -115,10 +123,8 @@ class BiaxialPress(Scene):
         return {"lid": (lid.home[0], lid.home[1] - depth)}
 
     def steps(self, settings: Values) -> int:
-        fraction = float(settings["packing_fraction"])
-        side = math.sqrt(float(settings["grains"]) * Recipe().mean_area() / fraction)
         return math.floor(
-            way_down(side, float(settings["compression"])) / float(settings["step"]) + 1e-6
+            way_down(_square(settings), float(settings["compression"])) / step(settings) + 1e-6
         )
 
     def region(self, setup: Setup) -> list[Point]:
@@ -128,6 +134,12 @@ class BiaxialPress(Scene):
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _balance(setup), _pushes_back(track)]
+
+
+def _square(settings: Values) -> float:
+    """Side of the square at the start [R]."""
+    area = float(settings["grains"]) * recipe(settings, "mixed").mean_area()
+    return math.sqrt(area / float(settings["packing_fraction"]))
 
 
 def way_down(side: float, compression: float) -> float:

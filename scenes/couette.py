@@ -5,17 +5,18 @@ from __future__ import annotations
 import math
 
 from core import observables
-from core.generate import Progress, pack
+from core.errors import InputError
+from core.generate import Progress, Recipe, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     STRONGEST,
     Check,
@@ -30,8 +31,8 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -42,7 +43,9 @@ DISC = 1.0 / 3.5  # radius of a plate's discs [R]
 NOTCH = 1.0 + DISC
 TIP_ANGLE = math.asin(0.5 * TOOTH / NOTCH)
 TIP = NOTCH * math.cos(TIP_ANGLE)  # of the tips' centres below that of a grain in its notch [R]
-GRAINS_A_TOOTH = 16  # 800 grains on 50 teeth, which are 100 R
+GRAINS_A_TOOTH = 16  # of the usual sizes: 800 grains on 50 teeth, which are 100 R
+AREA_A_TOOTH = GRAINS_A_TOOTH * Recipe().mean_area()  # [R²]
+LEAST_TEETH = 5
 STEADY, SMALL, MIDDLE, LARGE = range(4)
 # Amplitudes of the cycles in shear strain; the paper's 0.1°, 2° and 100° of its cell.
 AMPLITUDE = {SMALL: 0.002, MIDDLE: 0.04, LARGE: 2.0}
@@ -68,7 +71,7 @@ class Couette(Scene):
             "",
             160,
             4000,
-            "number of grains, in steps of 16; the cell is 2 R long for every 16 (paper: 800)",
+            "number of grains, in steps of 16; the cell is 2 R long for every 16 of the usual sizes (paper: 800)",
         ),
         Parameter(
             "packing_fraction",
@@ -90,9 +93,15 @@ class Couette(Scene):
         Parameter("cycles", 2, "", 1, 50, "number of cycles", live=True),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
+
+    def validate(self, settings: Values) -> None:
+        if _teeth(settings) < LEAST_TEETH:
+            raise InputError("too few grains of these sizes for a cell: raise grains")
 
     def ingredients(self, settings: Values) -> Ingredients:
         return Ingredients(periodic=True, friction=float(settings["friction"]) > 0.0)
@@ -100,9 +109,7 @@ class Couette(Scene):
     def steps(self, settings: Values) -> int:
         if int(settings["protocol"]) != STEADY:
             return 4 * _quarter(settings) * int(settings["cycles"])
-        return max(
-            1, round(float(settings["strain"]) * _cell(settings)[2] / float(settings["step"]))
-        )
+        return max(1, round(float(settings["strain"]) * _cell(settings)[2] / step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None
@@ -135,7 +142,7 @@ class Couette(Scene):
             outline=outline,
             world=world,
             box=PeriodicBox(width),
-            count=GRAINS_A_TOOTH * teeth,
+            count=round(teeth * _grains_a_tooth(settings)),
             tolerance=min(1e-3, float(settings["tolerance"])),
             progress=progress,
         )
@@ -195,11 +202,21 @@ class Couette(Scene):
         return [*super().checks(setup, track), _stresses_agree(setup)]
 
 
+def _grains_a_tooth(settings: Values) -> float:
+    """So many that the plates are as far apart whatever the sizes of the grains."""
+    return AREA_A_TOOTH / recipe(settings, "mixed").mean_area()
+
+
+def _teeth(settings: Values) -> int:
+    """Of each plate."""
+    return int(int(settings["grains"]) / _grains_a_tooth(settings))
+
+
 def _cell(settings: Values) -> tuple[int, float, float]:
     """Teeth of a plate, width of the cell, and height from the lower to the upper tips' centres [R]."""
-    teeth = int(settings["grains"]) // GRAINS_A_TOOTH
+    teeth = _teeth(settings)
     width = TOOTH * teeth
-    grains = GRAINS_A_TOOTH * teeth * recipe(settings, "mixed").mean_area()
+    grains = teeth * AREA_A_TOOTH
     # What is open of a notch under the line of the tips: the circle's segment less one half of each disc.
     segment = NOTCH**2 * (TIP_ANGLE - math.sin(TIP_ANGLE) * math.cos(TIP_ANGLE))
     notch = segment - 0.5 * TOOTH_DISCS * math.pi * DISC**2
@@ -232,14 +249,14 @@ def plate_stresses(world: RigidWorld, width: float, increment: Increment) -> tup
 def _quarter(settings: Values) -> int:
     """Increments in a quarter of a cycle."""
     way = AMPLITUDE[int(settings["protocol"])] * _cell(settings)[2]
-    return max(QUARTER, math.ceil(way / float(settings["step"])))
+    return max(QUARTER, math.ceil(way / step(settings)))
 
 
 def _strain(settings: Values, increments: int) -> float:
     """Shear strain that the script asks for after so many increments."""
     protocol = int(settings["protocol"])
     if protocol == STEADY:
-        return increments * float(settings["step"]) / _cell(settings)[2]
+        return increments * step(settings) / _cell(settings)[2]
     phase = increments / _quarter(settings) % 4.0
     return AMPLITUDE[protocol] * (
         phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0

@@ -15,11 +15,11 @@ from core.generate import Progress, Recipe
 from core.packing import Packing
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
+from scenes.grains import MATERIAL
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     STRONGEST,
     Check,
     Curve,

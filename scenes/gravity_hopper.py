@@ -18,12 +18,12 @@ from core.packing import Packing
 from core.quasistatic import Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.hopper import WALL, Shape, standing_arch
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     STRONGEST,
     Check,
@@ -38,7 +38,6 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
 )
 from scenes.text import Text
@@ -101,7 +100,9 @@ class GravityHopper(Scene):
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
         Parameter("packing_fraction", 0.84, "", 0.3, 0.9, "packing fraction at the start"),
         hand(STRONGEST),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
         *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
     )
@@ -209,9 +210,17 @@ class GravityHopper(Scene):
         if found is None:
             text = Text("at rest: {count} grains stay on the funnel's sides", count=count)
             return Remarks((text,))
+        arch = int(found.sum())
+        if count == latest.at_start:
+            text = Text(
+                "never started: an arch of {arch} holds all {count} grains. Shake the funnel",
+                arch=arch,
+                count=count,
+            )
+            return Remarks((text,), found, {"arch": text})
         text = Text(
             "clogged: an arch of {arch} holds {count} grains. Shake the funnel",
-            arch=int(found.sum()),
+            arch=arch,
             count=count,
         )
         return Remarks((text,), found, {"clog": text})

@@ -12,11 +12,11 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     Handle,
     Holding,
@@ -29,8 +29,8 @@ from scenes.scene import (
     below_height,
     friction,
     hand,
-    recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -80,8 +80,10 @@ class Hopper(Scene):
             "stroke", 22.0, "R", 0.5, 200.0, "length of the piston's scripted stroke", live=True
         ),
         Parameter("friction", 0.5, "", 0.0, 10.0, FRICTION, live=True),
-        hand(6.0),
+        hand(8.0),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 
@@ -90,7 +92,7 @@ class Hopper(Scene):
 
     def steps(self, settings: Values) -> int:
         end = min(float(settings["stroke"]), Shape(settings).channel - 1.0)
-        return max(1, math.floor(end / float(settings["step"]) + 1e-6))
+        return max(1, math.floor(end / step(settings) + 1e-6))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

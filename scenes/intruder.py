@@ -8,11 +8,11 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     Handle,
     Latest,
@@ -22,8 +22,8 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
+    step,
 )
 from scenes.text import Text
 
@@ -58,7 +58,9 @@ class Intruder(Scene):
         Parameter("stroke", 20.0, "R", 0.5, 200.0, "length of the scripted drag", live=True),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         hand(0.6),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 
@@ -68,9 +70,7 @@ class Intruder(Scene):
     def steps(self, settings: Values) -> int:
         radius = float(settings["intruder_radius"])
         room = self._box(settings)[0] - 2.0 * (radius + MARGIN)
-        return max(
-            1, math.floor(min(float(settings["stroke"]), room) / float(settings["step"]) + 1e-6)
-        )
+        return max(1, math.floor(min(float(settings["stroke"]), room) / step(settings) + 1e-6))
 
     @staticmethod
     def _box(settings: Values) -> tuple[float, float]:

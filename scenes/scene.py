@@ -17,14 +17,15 @@ from numpy.typing import NDArray
 from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
-from core.generate import KINDS, Progress, Recipe, inside
+from core.generate import KINDS, Progress, inside
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point
-from core.settings import MACHINE, Settings
+from core.settings import LONGEST_STEP, MACHINE, Settings
 from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
+from scenes.grains import KINDS_OF_GRAINS, STIFFNESSES, check_material, material, recipe
 from scenes.parameter import Parameter, Value
 from scenes.text import Text
 
@@ -200,6 +201,7 @@ class Scene(ABC):
             settings[name] = (
                 by_name[name].parse(value) if isinstance(value, str) else by_name[name].check(value)
             )
+        check_material(settings)
         self.validate(settings)
         return settings
 
@@ -238,19 +240,23 @@ class Scene(ABC):
         Arrays of the packing are replaced, never written into.
         """
         packing = setup.packing
-        for name, kind in (("regular_poisson_ratio", False), ("auxetic_poisson_ratio", True)):
-            if name in changed:
-                of_kind = np.signbit(packing.poisson_ratio) == kind
-                new = np.where(of_kind, float(settings[name]), packing.poisson_ratio)
-                packing.poisson_ratio = new
-        if "contact_stiffness" in changed:
-            packing.contact_stiffness = np.full(len(packing), float(settings["contact_stiffness"]))
+        stiffness_changed = not changed.isdisjoint(STIFFNESSES)
+        for kind in KINDS_OF_GRAINS:
+            ratio_changed = not changed.isdisjoint((f"{kind}_poisson_ratio", "stiffness_ratio"))
+            if not (ratio_changed or stiffness_changed):
+                continue
+            nu, stiffness = material(settings, kind)
+            of_kind = np.signbit(packing.poisson_ratio) == (kind == "auxetic")
+            if ratio_changed:
+                packing.poisson_ratio = np.where(of_kind, nu, packing.poisson_ratio)
+            if stiffness_changed or float(settings.get("softness", 0.0)) > 0.0:
+                packing.contact_stiffness = np.where(of_kind, stiffness, packing.contact_stiffness)
         if "friction" in changed:
             setup.rub(float(settings["friction"]))
         if not changed.isdisjoint(p.name for p in SOLVER):
             setup.solver = replace(
                 setup.solver,
-                step=float(settings["step"]),
+                step=step(settings),
                 tolerance=float(settings["tolerance"]),
                 max_iterations=int(settings["max_iterations"]),
             )
@@ -261,7 +267,7 @@ class Scene(ABC):
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
         if "step" not in before:
             return increment
-        return math.ceil(increment * float(before["step"]) / float(after["step"]) - 1e-9)
+        return math.ceil(increment * step(before) / step(after) - 1e-9)
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""
@@ -289,30 +295,6 @@ class Scene(ABC):
         return setup.outline
 
 
-MATERIAL = (
-    Parameter("auxetic_fraction", 0.5, "", 0.0, 1.0, "share of auxetic grains in a mixed packing"),
-    Parameter(
-        "regular_poisson_ratio", 0.8, "", 0.0, 0.99, "Poisson's ratio of regular grains", live=True
-    ),
-    Parameter(
-        "auxetic_poisson_ratio",
-        -0.8,
-        "",
-        -0.99,
-        -0.01,
-        "Poisson's ratio of auxetic grains",
-        live=True,
-    ),
-    Parameter(
-        "contact_stiffness",
-        50.0,
-        "k",
-        5.0,
-        1000.0,
-        "stiffness of a contact over that of a grain: higher is harder and slower",
-        live=True,
-    ),
-)
 HAND_STRENGTH = "hand_strength"
 STRONGEST = 1000.0  # [k R] stands for a testing machine
 BY_MACHINE = (HAND_STRENGTH, STRONGEST)  # what a protocol sets that is driven wherever it wants
@@ -342,7 +324,15 @@ FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leave
 # cheap, the scene says so (avalanches). Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a
 # measurement.
 SOLVER = (
-    Parameter("step", 0.05, "R", 0.002, 0.15, "longest move of a body in one increment", live=True),
+    Parameter(
+        "step",
+        0.05,
+        "R",
+        0.002,
+        0.15,
+        "longest move of a body in one increment; never more than a quarter of the smallest radius",
+        live=True,
+    ),
     Parameter(
         "tolerance",
         1e-2,
@@ -364,21 +354,18 @@ SOLVER = (
 )
 
 
-def recipe(settings: Values, packing: str) -> Recipe:
-    """The grains that ``settings`` and the kind of packing ask for."""
-    return Recipe(
-        kind=packing,
-        auxetic_fraction=float(settings["auxetic_fraction"]),
-        regular_poisson_ratio=float(settings["regular_poisson_ratio"]),
-        auxetic_poisson_ratio=float(settings["auxetic_poisson_ratio"]),
-        contact_stiffness=float(settings["contact_stiffness"]),
-    )
+def step(settings: Values) -> float:
+    """How far a body moves in one increment at most [R]: as asked, but no further than the smallest grain allows."""
+    asked = float(settings["step"])
+    if "size_ratio" not in settings:
+        return asked
+    return min(asked, LONGEST_STEP * recipe(settings, "mixed").smallest)
 
 
 def solver(settings: Values) -> Settings:
     """How carefully ``settings`` ask to relax."""
     return Settings(
-        step=float(settings["step"]),
+        step=step(settings),
         tolerance=float(settings["tolerance"]),
         max_iterations=int(settings["max_iterations"]),
         hand_strength=hand_strength(settings),

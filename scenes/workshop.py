@@ -7,11 +7,11 @@ import math
 from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    MATERIAL,
     SOLVER,
     Handle,
     Scene,
@@ -19,8 +19,8 @@ from scenes.scene import (
     Values,
     friction,
     hand,
-    recipe,
     solver,
+    step,
 )
 
 WALL = 0.8  # thickness [R]
@@ -45,7 +45,9 @@ class Workshop(Scene):
         Parameter("intruder_radius", 2.0, "R", 0.5, 10.0, "radius of the disc"),
         Parameter("friction", 0.0, "", 0.0, 10.0, FRICTION, live=True),
         hand(0.6),
+        *SIZES,
         *MATERIAL,
+        *PAPER,
         *SOLVER,
     )
 
@@ -61,7 +63,7 @@ class Workshop(Scene):
             raise InputError("so many grains leave no room: lower grains, or raise width or height")
 
     def steps(self, settings: Values) -> int:
-        return max(2, math.floor(2.0 * _way(settings) / float(settings["step"]) + 1e-6))
+        return max(2, math.floor(2.0 * _way(settings) / step(settings) + 1e-6))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

@@ -16,7 +16,8 @@ from core.friction import Friction
 from core.generate import inside
 from core.packing import Packing
 from core.rigid import Point, RigidBody
-from sandbox.session.editing import drawn_wall, poisson_ratio
+from sandbox.session.editing import drawn_wall
+from scenes.grains import KINDS_OF_GRAINS, material
 from scenes.parameter import Value
 from scenes.scene import Scene, Setup, Values
 
@@ -47,13 +48,14 @@ class SceneFile:
         """The same places with grains of another kind of packing, to be looked at side by side; nothing to be logged."""
         if kind == self.packing:
             return self
-        nu = np.array([poisson_ratio(self.settings, one) for one in ("regular", "auxetic")])
+        made_of = np.array([material(self.settings, one) for one in KINDS_OF_GRAINS])
         share = {"regular": 0.0, "auxetic": 1.0}.get(
             kind, float(self.settings.get("auxetic_fraction", 0.5))
         )
         steps = np.floor(np.arange(len(self.grains) + 1) * share + 1e-9)
         grains = self.grains.copy()
-        grains.poisson_ratio = nu[np.diff(steps).astype(np.int64)]
+        materials = made_of[np.diff(steps).astype(np.int64)]
+        grains.poisson_ratio, grains.contact_stiffness = np.ascontiguousarray(materials.T)
         return replace(self, packing=kind, grains=grains, text=b"", data=b"")
 
 

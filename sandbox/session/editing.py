@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.generate import SIZE_RATIO, inside
-from core.material import DEFAULT_CONTACT_STIFFNESS, DEFAULT_POISSON_RATIO
 from core.packing import MAX_LABEL, Packing
 from core.rigid import Point, RigidBody, depth
 from sandbox.session import free_room as room
 from sandbox.session.commands import DrawWall, Edit, Erase, EraseWall, Place, Retype
+from scenes.grains import material
 from scenes.scene import Setup, Values
 from scenes.text import Text
 
@@ -67,11 +67,12 @@ def edited(setup: Setup, settings: Values, command: Edit, next_label: int) -> Ed
             return _erase_wall(setup, (x, y))
 
 
-def poisson_ratio(settings: Values, kind: str) -> float:
-    """ν of a grain of that kind in a scene with these settings."""
-    if kind == "auxetic":
-        return float(settings.get("auxetic_poisson_ratio", -DEFAULT_POISSON_RATIO))
-    return float(settings.get("regular_poisson_ratio", DEFAULT_POISSON_RATIO))
+def radii(settings: Values) -> tuple[float, float]:
+    """Radius of a large and of a small grain [R] that are placed in a scene with these settings: of sizes that it has."""
+    middle = 1.0 - 0.5 * float(settings.get("size_width", 0.0))
+    small_fraction = float(settings.get("small_fraction", 0.5))
+    large, small = middle, middle / float(settings.get("size_ratio", SIZE_RATIO))
+    return large if small_fraction < 1.0 else small, small if small_fraction > 0.0 else large
 
 
 # Grains
@@ -90,15 +91,14 @@ def _place(setup: Setup, settings: Values, at: Point, kind: str, label: int) -> 
     if room.from_bodies(setup, here)[0] <= 0.0:
         raise InputError("there is a wall or another body here: no room for a grain")
     # Large and small ones in turn; where only the other size fits, that one.
-    sizes = (1.0, 1.0 / SIZE_RATIO) if label % 2 == 0 else (1.0 / SIZE_RATIO, 1.0)
-    for radius in sizes:
+    large, small = radii(settings)
+    for radius in (large, small) if label % 2 == 0 else (small, large):
         place, free = _best_place(setup, at, radius)
         if free >= LEAST * radius:
             break
     else:
         raise InputError("no room for a grain here: erase one first")
-    nu = poisson_ratio(settings, kind)
-    stiffness = float(settings.get("contact_stiffness", DEFAULT_CONTACT_STIFFNESS))
+    nu, stiffness = material(settings, kind)
     new = Packing([place[0]], [place[1]], radius, nu, stiffness, label=[label])
     new.state[2] = min(radius, free)
     joined = packing.copy()
@@ -129,11 +129,11 @@ def _erase(setup: Setup, at: Point, radius: float) -> Edited:
 
 def _retype(setup: Setup, settings: Values, at: Point, radius: float, kind: str) -> Edited:
     packing = setup.packing.copy()
-    nu = poisson_ratio(settings, kind)
+    nu, stiffness = material(settings, kind)
     other = room.within(packing, at, radius) & (packing.poisson_ratio != nu)
     if not other.any():
         raise InputError("there is no grain of another kind here")
-    packing.poisson_ratio[other] = nu
+    packing.poisson_ratio[other], packing.contact_stiffness[other] = nu, stiffness
     return Edited(packing, np.arange(len(packing)), setup.world.drawn)
 
 

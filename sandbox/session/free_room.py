@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core import observables
 from core.arrays import Floats
+from core.endless import endless
 from core.generate import inside
 from core.packing import Packing, PeriodicBox
 from core.rigid import Point
@@ -67,14 +68,14 @@ def from_grains(packing: Packing, points: Floats) -> Floats:
 
 def from_bodies(setup: Setup, points: Floats) -> Floats:
     """How far each of ``points`` (n, 2) is from the nearest body (n,) [R], negative inside; inf where there is no body."""
-    primitives, _ = setup.world.primitives()
     x, y = points.T
     free = np.full(len(points), np.inf)
-    for row in primitives:
-        dx, dy = images(x - row[1], y - row[2], setup.packing.box)
+    for row in endless(setup.world.primitives()[0], setup.packing.box):
+        middle = 0.5 * (row[1:3] + row[5:7]) if row[0] == EDGE else row[1:3]
+        dx, dy = images(x - middle[0], y - middle[1], setup.packing.box)
         if row[0] == EDGE:
             length = (row[5] - row[1]) * row[3] + (row[6] - row[2]) * row[4]
-            along = np.clip(dx * row[3] + dy * row[4], 0.0, length)
+            along = np.clip(dx * row[3] + dy * row[4], -0.5 * length, 0.5 * length)
             dx, dy = dx - along * row[3], dy - along * row[4]
         free = np.minimum(free, np.hypot(dx, dy) - row[7])
     for body in setup.world.bodies:

@@ -1,4 +1,4 @@
-"""The friction of one increment: against its slow twin, as a derivative, its laws and symmetries, and what contacts remember."""
+"""The friction of one increment: against its slow twin, as motion of material points, its laws and symmetries, and its memory."""
 
 from __future__ import annotations
 
@@ -11,21 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from core import fire, observables
+from core import fire, observables, reference
 from core.errors import InputError
-from core.friction import (
-    TANGENTIAL_STIFFNESS,
-    Friction,
-    FrictionTerms,
-    FrozenContacts,
-    add_friction_forces,
-    settle_places,
-)
+from core.friction import Friction
+from core.frictional_contacts import BODY, GRAIN, FrictionForces
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
+from core.slip import TANGENTIAL_STIFFNESS
 from core.system import System
 from tests.core import examples, reference_friction
 
@@ -38,64 +33,76 @@ FEW = settings(max_examples=15, deadline=None)
 
 @dataclass
 class Case:
-    """A strained packing among bodies that are about to move, with memories of every contact; half of them slide."""
+    """Where slips are counted from, and where grains and bodies are now."""
 
-    packing: Packing
+    before: Packing
     world: RigidWorld
-    before: Floats
-    after: Floats
+    placed: Floats  # of the bodies, before
     friction: Friction
+    packing: Packing
+    turned: Floats
+    place: Floats
 
-    def freeze(self) -> FrozenContacts:
-        return freeze(self.friction, self.packing, self.world, self.before, self.after)
+    def relaxation(self, *, friction: bool = True, skin: float = 0.3) -> Relaxation:
+        """One that has looked at the forces once."""
+        self.world.place(self.placed)
+        rows, owner = self.world.primitives()
+        origin = self.friction.begin(self.before, rows, owner, self.placed, self.place)
+        self.world.place(self.place)
+        rows = self.world.primitives()[0]
+        relaxation = Relaxation(self.packing, rows, origin if friction else None, skin=skin)
+        if friction:
+            relaxation._minimizer.state[5] = self.turned
+        relaxation.run(1)
+        return relaxation
+
+    def forces(self) -> tuple[float, Floats]:
+        """Energy [k R²] and forces (6, N) of friction alone."""
+        return rubbing(self.relaxation(), self.relaxation(friction=False))
+
+    def twin(self) -> reference_friction.Before:
+        self.world.place(self.placed)
+        rows, owner = self.world.primitives()
+        return reference_friction.Before(
+            self.before,
+            self.friction.remembered(),
+            self.friction.coefficient,
+            rows,
+            (self.place - self.placed)[owner, 2],
+        )
+
+    def contacts(self) -> list[reference_friction.Tangential]:
+        """As the twin has them."""
+        before = self.twin()
+        self.world.place(self.place)
+        rows = self.world.primitives()[0]
+        return reference_friction.frictional_contacts(self.packing, self.turned, rows, before)
 
 
-def freeze(
-    friction: Friction, packing: Packing, world: RigidWorld, before: Floats, after: Floats
-) -> FrozenContacts:
-    world.place(before)
-    primitives, owner = world.primitives()
-    pairs = observables.grain_contacts(packing)
-    touching = observables.body_contacts(packing, primitives)
-    return friction.begin(packing, pairs, touching, primitives, owner, before, after)
+def rubbing(with_friction: Relaxation, without: Relaxation) -> tuple[float, Floats]:
+    """Energy and forces (6, N) by which two relaxations differ."""
+    forces = with_friction.forces()
+    forces[:5] -= without.forces()
+    return with_friction.report().energy - without.report().energy, forces
 
 
-def remember(friction: Friction, frozen: FrozenContacts, packing: Packing, seed: int) -> None:
+def remember(friction: Friction, packing: Packing, world: RigidWorld, seed: int) -> None:
     """Give every contact a memory of up to 0.9 of what it can hold."""
-    share = np.random.default_rng(seed).uniform(-0.9, 0.9, len(frozen.keys))
-    terms = frozen.terms
-    blank = -(terms.tx * packing.x[terms.i] + terms.ty * packing.y[terms.i])
-    pair = terms.j >= 0
-    blank[pair] += terms.tx[pair] * packing.x[terms.j[pair]]
-    blank[pair] += terms.ty[pair] * packing.y[terms.j[pair]]
-    slips = share * terms.cap / terms.stiffness
-    still = frozen.terms._replace(offset=blank + slips)
-    friction.end(replace(frozen, terms=still), packing, np.zeros(len(packing)))
-
-
-def case(
-    seed: int, box: PeriodicBox | None = None, bodies: bool = True, move: float = 0.02
-) -> Case:
-    packing = examples.random_grains(20, 9.0, seed, box)
-    world = examples.bodies() if bodies else RigidWorld()
-    before = world.placement()
-    after = before + np.random.default_rng(seed).uniform(-move, move, before.shape)
-    friction = Friction(MU, len(packing))
-    made = Case(packing, world, before, before, friction)
-    remember(friction, made.freeze(), packing, seed)
-    made.after = after
-    return made
-
-
-def evaluate(terms: FrictionTerms, packing: Packing, turned: Floats) -> tuple[float, Floats]:
-    """Energy [k R²] and forces on x, y, spin (3, N) of friction alone, by the kernel."""
-    count = len(packing)
-    state = np.concatenate([packing.state, turned[None]])
-    force = np.zeros((6, count))
-    settle_places(np.arange(count), terms)
-    energy = add_friction_forces(state, force, terms)
-    assert not force[2:5].any()
-    return energy, force[[0, 1, 5]]
+    pairs = observables.grain_contacts(packing)
+    bodies = observables.body_contacts(packing, world.primitives()[0])
+    label = packing.label
+    a, b = label[pairs.i], label[pairs.j]
+    keys = np.concatenate(
+        [
+            np.minimum(a, b) * GRAIN + np.maximum(a, b),
+            label[bodies.grain] * GRAIN + BODY + bodies.primitive,
+        ]
+    )
+    overlap = np.concatenate([pairs.overlap, bodies.overlap])
+    order = np.argsort(keys)
+    share = np.random.default_rng(seed).uniform(-0.9, 0.9, len(keys))
+    limit = friction.coefficient / TANGENTIAL_STIFFNESS * overlap[order]
+    friction.remember(friction.spin, keys[order], share * limit)
 
 
 def wander(packing: Packing, seed: int, size: float) -> tuple[Packing, Floats]:
@@ -106,119 +113,204 @@ def wander(packing: Packing, seed: int, size: float) -> tuple[Packing, Floats]:
     return moved, random.uniform(-size, size, len(packing))
 
 
+def case(
+    seed: int,
+    size: float = 0.01,
+    box: PeriodicBox | None = None,
+    bodies: bool = True,
+    move: float = 0.02,
+) -> Case:
+    """Grains and bodies anywhere that have gone up to ``size`` and ``move`` since every contact remembered something."""
+    packing = examples.random_grains(20, 9.0, seed, box)
+    world = examples.bodies() if bodies else RigidWorld()
+    if box is not None and bodies:
+        world.remove("floor")  # it is too long for a cell
+    placed = world.placement()
+    friction = Friction(MU, len(packing))
+    remember(friction, packing, world, seed)
+    place = placed + np.random.default_rng(seed).uniform(-move, move, placed.shape)
+    moved, turned = wander(packing, seed, size)
+    return Case(packing, world, placed, friction, moved, turned, place)
+
+
+def assert_twins(made: Case) -> list[reference_friction.Tangential]:
+    """Compare all forces and the energy; the contacts."""
+    whole = made.relaxation()
+    energy, forces = rubbing(whole, made.relaxation(friction=False))
+    before = made.twin()
+    made.world.place(made.place)
+    rows = made.world.primitives()[0]
+    twin = (made.packing, made.turned, rows, before)
+    expected_energy, in_paper_chart, torque = reference_friction.friction_energy_and_forces(*twin)
+    expected = np.vstack([reference.to_smooth_chart(made.packing, in_paper_chart), torque])
+    assert np.max(np.abs(forces - expected)) <= RELATIVE * np.max(np.abs(whole.forces()))
+    assert energy == pytest.approx(expected_energy, abs=RELATIVE * whole.report().energy)
+    return reference_friction.frictional_contacts(*twin)
+
+
+CELLS = {
+    "open": None,
+    "periodic": PeriodicBox(9.0, 9.5),
+    "sheared": PeriodicBox(9.0, 9.5, 2.3),
+    "periodic in x": PeriodicBox(9.0),
+}
+
+
 @pytest.mark.parametrize("size", [0.0, 0.003, 0.3])
 @pytest.mark.parametrize("seed", range(4))
 def test_twin(seed: int, size: float) -> None:
-    """Nearly all contacts stick at 0.003 R, most slide at 0.3 R."""
-    made = case(seed)
-    frozen = made.freeze()
-    moved, turned = wander(made.packing, seed, size)
-    energy, forces = evaluate(frozen.terms, moved, turned)
-    primitives, owner = made.world.primitives()
-    motion = surface_motion(made, frozen, owner)
-    twin = reference_friction.frozen_friction(
-        made.packing, MU, made.friction.remembered(), primitives
-    )
-    twin = [one._replace(carried=motion.get(one.labels, 0.0)) for one in twin]
-    assert len(twin) == len(frozen.keys)
-    expected_energy, expected = reference_friction.friction_energy_and_forces(
-        twin, (moved.state - made.packing.state)[:2], turned
-    )
-    scale = np.max(np.abs(expected))
-    # A slip is the rounded difference of coordinates of some 10 R; times k_t, up to 100 k, that is 1e-13 k R a contact.
-    assert np.max(np.abs(forces - expected)) <= RELATIVE * scale + 1e-12
-    assert energy == pytest.approx(expected_energy, rel=RELATIVE)
+    """Nearly all contacts stick at 0.003 R, a third slides at 0.3 R; there some were open before, and some have opened since."""
+    made = case(seed, size, move=max(size, 0.02))
+    contacts = assert_twins(made)
+    sliding = np.mean([one.sliding for one in contacts])
+    known = set(made.friction.remembered())
+    assert sliding < 0.1 if size < 0.1 else 0.2 < sliding < 0.8
+    if size > 0.1:
+        assert any(one.gap > 0.0 for one in contacts)
+        assert known - {one.labels for one in contacts}
 
 
-def surface_motion(
-    made: Case, frozen: FrozenContacts, owner: NDArray[np.int64]
-) -> dict[tuple[int, int], float]:
-    """Motion of the bodies' surfaces along t at every contact [R], by labels: translation and small rotation of a rigid body."""
-    shift = made.after - made.before
-    found = {}
-    for k in np.flatnonzero(frozen.terms.j < 0):
-        m = int(frozen.primitive[k])
-        b = int(owner[m])
-        lever = np.array([frozen.x[k], frozen.y[k]]) - made.before[b, :2]
-        velocity = shift[b, :2] + shift[b, 2] * np.array([-lever[1], lever[0]])
-        tangent = np.array([frozen.terms.tx[k], frozen.terms.ty[k]])
-        label = int(made.packing.label[frozen.terms.i[k]])
-        found[label, -1 - m] = float(velocity @ tangent)
-    return found
+@pytest.mark.parametrize("box", CELLS.values(), ids=CELLS.keys())
+@pytest.mark.parametrize("seed", range(3))
+def test_twin_in_a_cell(seed: int, box: PeriodicBox | None) -> None:
+    """Bodies among grains of a cell, whose contacts reach through its edges."""
+    contacts = assert_twins(case(seed, 0.02, box))
+    assert {one.j >= 0 for one in contacts} == {True, False}
 
 
-def test_twin_in_a_relaxation() -> None:
-    """With everything else, and with the minimiser's own order of grains."""
-    made = case(3)
-    frozen = made.freeze()
-    moved, _ = wander(made.packing, 3, 0.01)
-    rows = made.world.primitives()[0]
-    with_friction = Relaxation(moved, rows, frozen.terms)
-    energy = with_friction.run(1).energy
-    without = Relaxation(moved, rows)
-    bare = without.run(1).energy
-    alone, forces = evaluate(frozen.terms, moved, np.zeros(len(moved)))
-    assert energy - bare == pytest.approx(alone, abs=RELATIVE * energy)
-    everything = with_friction.forces()
-    scale = np.max(np.abs(everything))
-    assert np.max(np.abs(everything[:2] - without.forces()[:2] - forces[:2])) <= RELATIVE * scale
-    assert np.max(np.abs(everything[2:5] - without.forces()[2:])) <= RELATIVE * scale
-    assert np.max(np.abs(everything[5] - forces[2])) <= RELATIVE * scale
+def test_twin_where_a_cell_changes() -> None:
+    """Sides and shift of the cell change, and the grains go with them: the way counts that the touched image has gone."""
+    made = case(2, 0.01, PeriodicBox(9.0, 9.5, 2.3), bodies=False)
+    made.packing.state[:2] = made.before.state[:2] * np.array([[9.1 / 9.0], [9.45 / 9.5]])
+    made.packing.state[0] += 0.15 * made.before.state[1] / 9.5
+    made.packing.box = PeriodicBox(9.1, 9.45, 2.45)
+    assert_twins(made)
 
 
-@pytest.mark.parametrize("size", [0.001, 0.6])
-def test_forces_are_derivatives(size: float) -> None:
-    """Central differences of width h = 1e-6, where all stick and where most slide.
+def stretch(state: Floats) -> Floats:
+    """U (2, 2) from p, q1, q2."""
+    p, q1, q2 = state
+    return np.array([[p + q1, q2], [q2, p - q1]])
 
-    The potential is quadratic or linear, so all but rounding is exact, unless a contact begins to slide within h: there the
-    error is at most k_t h, 1e-4 k R.
+
+def rotation(angle: float) -> Floats:
+    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+
+
+def turn_shapes(state: Floats, angle: float) -> None:
+    """Turn the ellipses of (5, N) in place."""
+    state[3:5] = rotation(2.0 * angle) @ state[3:5]
+
+
+def lone_pair(other: str, seed: int) -> Case:
+    """A strained, turned grain that sticks to another, to the end or the side of a plate, or to a disc."""
+    random = np.random.default_rng(seed)
+    world = RigidWorld()
+    if other != "grain":
+        shapes = {
+            "edge": RigidBody("body", segments=[(-5.0, 0.0, 5.0, 0.0, 0.2)]),
+            "vertex": RigidBody("body", segments=[(0.1, 0.0, 0.1, -5.0, 0.2)]),
+            "disc": RigidBody("body", discs=[(0.2, -0.6, 0.8)]),
+        }
+        world = RigidWorld([shapes[other]])
+    packing = Packing([0.0, 0.5], [1.0, -0.75 if other == "grain" else 50.0], 1.0, 0.3, 50.0)
+    packing.set_axes(*random.uniform(0.95, 1.2, (2, 2)), random.uniform(-2.0, 2.0, 2))
+    moved, turned = wander(packing, seed, 1e-3)
+    placed = world.placement()
+    return Case(packing, world, placed, Friction(10.0, 2), moved, turned, placed + 1e-3)
+
+
+@pytest.mark.parametrize("other", ["grain", "edge", "vertex", "disc"])
+@pytest.mark.parametrize("seed", range(3))
+def test_friction_does_work_where_material_points_pass_each_other(other: str, seed: int) -> None:
+    """The generalised forces times any velocities are −f times t·(v_i − v_j) of the material points that touch, by differences.
+
+    A material point X of a grain is at x + U R(φ) X. Between grains the force acts half way between the outlines: on an arm of Δ/2
+    from there, which turns with the material. The differences are good to 1e-9 of velocities of 1 R.
     """
-    made = case(1)
-    terms = made.freeze().terms
-    moved, turned = wander(made.packing, 1, size)
-    energy, forces = evaluate(terms, moved, turned)
-    slides = np.isclose(np.abs(terms.pull), terms.cap, rtol=1e-12, atol=0.0)
-    assert slides.mean() > 0.5 if size > 0.1 else not slides.any()
-    step = 1e-6
-    for i in range(len(moved)):
-        for row in range(3):
+    made = lone_pair(other, seed)
+    _, forces = made.forces()
+    (contact,) = made.contacts()
+    n = np.array(contact.n)
+    t = np.array([-n[1], n[0]])
+    pull = float(-forces[:2, 0] @ t)
+    assert abs(pull) > 1e-4
+    assert np.abs(forces[:2, 0] + pull * t).max() < 1e-12
+    state = np.vstack([made.packing.state, made.turned])
+    # The twin's overlap is that of its cap.
+    arm = 0.5 * contact.cap / (10.0 * 50.0) if other == "grain" else 0.0
 
-            def shifted(by: float, row: int = row, i: int = i) -> float:
-                state, spin = moved.copy(), turned.copy()
-                if row < 2:
-                    state.state[row, i] += by
-                else:
-                    spin[i] += by
-                return evaluate(terms, state, spin)[0]
+    def point(now: Floats, k: int, outwards: Floats) -> Floats:
+        back = rotation(-state[5, k])
+        e = stretch(state[2:5, k]) @ outwards
+        material = back @ (e / np.hypot(*e))
+        where = now[:2, k] + stretch(now[2:5, k]) @ rotation(now[5, k]) @ material
+        return np.array(where - arm * rotation(now[5, k]) @ back @ outwards)
 
-            slope = (shifted(-step) - shifted(step)) / (2.0 * step)
-            tolerance = 100.0 * step + 16.0 * EPSILON * energy / step
-            assert abs(slope - forces[row, i]) <= tolerance
+    random = np.random.default_rng(seed)
+    for _ in range(20):
+        velocity = random.uniform(-1.0, 1.0, state.shape)
+        h = 1e-5
+
+        def apart(by: float, velocity: Floats = velocity) -> Floats:
+            now = state + by * velocity
+            mine = point(now, 0, n)
+            return mine - point(now, 1, -n) if other == "grain" else mine
+
+        passing = float(t @ (apart(h) - apart(-h))) / (2.0 * h)
+        counted = velocity if other == "grain" else velocity[:, :1]
+        work = float(np.sum(forces[:, : counted.shape[1]] * counted))
+        assert work == pytest.approx(-pull * passing, abs=1e-8 * abs(pull))
 
 
 @pytest.mark.parametrize("box", [None, PeriodicBox(9.0, 9.5, 2.3)], ids=["open", "periodic"])
 @pytest.mark.parametrize("seed", range(3))
 def test_forces_add_up_to_nothing(seed: int, box: PeriodicBox | None) -> None:
-    made = case(seed, box, bodies=False)
-    moved, turned = wander(made.packing, seed, 0.1)
-    _, forces = evaluate(made.freeze().terms, moved, turned)
-    assert np.abs(forces[:2].sum(axis=1)).max() <= 100 * EPSILON * np.abs(forces).max()
+    made = case(seed, 0.1, box, bodies=False)
+    whole = made.relaxation().forces()
+    assert np.abs(whole[:2].sum(axis=1)).max() <= 200 * EPSILON * np.abs(whole).max()
+
+
+@given(st.integers(0, 30), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
+@FEW
+def test_third_law(seed: int, x: float, y: float) -> None:
+    """Forces, torques on spins and on shapes, and reactions of the bodies, about any point: all add up to nothing.
+
+    What friction does to a spin alone is not f times a lever from the centre: the shape takes its part.
+    """
+    made = case(seed)
+    whole = made.relaxation()
+    _, (fx, fy, _, on_q1, on_q2, torque) = rubbing(whole, made.relaxation(friction=False))
+    packing = made.packing
+    on_shapes = 2.0 * (packing.q1 * on_q2 - packing.q2 * on_q1)
+    _, owner = made.world.primitives()
+    on_bodies = whole.slips()[2].reactions(owner, made.place)
+    lever_x, lever_y = made.place[:, 0] - x, made.place[:, 1] - y
+    balance = [
+        fx.sum() + on_bodies[:, 0].sum(),
+        fy.sum() + on_bodies[:, 1].sum(),
+        np.sum((packing.x - x) * fy - (packing.y - y) * fx + torque + on_shapes)
+        + np.sum(lever_x * on_bodies[:, 1] - lever_y * on_bodies[:, 0] + on_bodies[:, 2]),
+    ]
+    assert np.abs(on_bodies).max() > 0.1
+    scale = np.abs(whole.forces()).max() * 40.0  # longest lever
+    assert np.abs(balance).max() <= 100 * EPSILON * scale
 
 
 def test_stress_counts_friction() -> None:
     """In equilibrium Σ_c F_i d_j over all contacts is symmetric, and is what the bodies' forces at their places make of it.
 
-    That follows from Σ_c F = 0 and Σ_c (torque) = 0 on every grain: for spins and shapes each on their own. All is balanced to
-    1e-9 of forces of 1 k R, but t and the levers are those before the last increment, so that one is a repetition.
+    That follows from Σ_c F = 0 and Σ_c (torque) = 0 on every grain, for spins and shapes each on their own. All is balanced to
+    1e-9 of forces of 1 k R.
     """
     packing, world = box_of_grains()
     settings = Settings(0.05, 1e-9, force_floor=1e-6, max_iterations=50_000)
     engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
-    for k in range(40):
+    for k in range(8):
         engine.begin({"plate": (min(0.05 * k, 0.2), world["plate"].position[1])})
         increment = engine.relax(50_000)
-    assert increment is not None
-    assert increment.report.reason is StopReason.CONVERGED
+        assert increment is not None
+        assert increment.report.reason is StopReason.CONVERGED
     friction, bodies = increment.friction, increment.body_contacts
     assert friction is not None
     bare = observables.stress(increment.grain_contacts, 1.0, bodies, packing)
@@ -240,79 +332,143 @@ def test_stress_counts_friction() -> None:
     assert np.abs(inner - whole).max() > 0.1
 
 
-@given(st.integers(0, 30), st.floats(-20.0, 20.0), st.floats(-20.0, 20.0))
-@FEW
-def test_third_law(seed: int, x: float, y: float) -> None:
-    """Forces, spin torques and reactions of the bodies, about any point: where the contacts are, all add up to nothing."""
-    made = case(seed)
-    made.after = made.before
-    frozen = made.freeze()
-    packing = made.packing
-    _, (fx, fy, torque) = evaluate(frozen.terms, packing, np.zeros(len(packing)))
-    _, owner = made.world.primitives()
-    forces = made.friction.end(frozen, packing, np.zeros(len(packing)))
-    on_bodies = forces.reactions(owner, made.before)
-    lever_x, lever_y = made.before[:, 0] - x, made.before[:, 1] - y
-    balance = [
-        fx.sum() + on_bodies[:, 0].sum(),
-        fy.sum() + on_bodies[:, 1].sum(),
-        np.sum((packing.x - x) * fy - (packing.y - y) * fx + torque)
-        + np.sum(lever_x * on_bodies[:, 1] - lever_y * on_bodies[:, 0] + on_bodies[:, 2]),
-    ]
-    assert np.abs(on_bodies).max() > 0.1
-    scale = np.abs([fx, fy, torque]).max() * 40.0  # longest lever
-    assert np.abs(balance).max() <= 100 * EPSILON * scale
+# What is no slip, and how much is one.
+
+
+def slips_of(made: Case) -> Floats:
+    """Slips of all contacts that touch [R], cut to what they can hold."""
+    _, slips, forces = made.relaxation().slips()
+    assert not forces.sliding.any()
+    return slips
+
+
+def turned_as_one(made: Case, angle: float) -> Case:
+    """Grains, their shapes and bodies turned by ``angle`` about a point."""
+    centre = np.array([[3.0], [-2.0]])
+    packing = made.before.copy()
+    packing.state[:2] = centre + rotation(angle) @ (packing.state[:2] - centre)
+    turn_shapes(packing.state, angle)
+    place = made.placed.copy()
+    place[:, :2] = (centre + rotation(angle) @ (place[:, :2].T - centre)).T
+    place[:, 2] += angle
+    friction = Friction(10.0, len(packing))
+    turned = np.full(len(packing), angle)
+    return Case(made.before, made.world, made.placed, friction, packing, turned, place)
 
 
 def test_turning_everything_is_no_slip() -> None:
-    """Grains and bodies turned together by a small angle as one rigid whole: no contact slips, to first order."""
+    """Strained grains and bodies turned together as one rigid whole: what counts as slip is of second order."""
     made = case(5)
-    friction = Friction(MU, len(made.packing))
-    centre = np.array([3.0, -2.0])
-    angle = 1e-6
-    made.after = made.before.copy()
-    made.after[:, 0] -= angle * (made.before[:, 1] - centre[1])
-    made.after[:, 1] += angle * (made.before[:, 0] - centre[0])
-    made.after[:, 2] += angle
-    frozen = freeze(friction, made.packing, made.world, made.before, made.after)
-    turned = made.packing.copy()
-    turned.state[0] -= angle * (made.packing.y - centre[1])
-    turned.state[1] += angle * (made.packing.x - centre[0])
-    evaluate(frozen.terms, turned, np.full(len(turned), angle))
-    slips = frozen.terms.pull / frozen.terms.stiffness
-    assert np.abs(slips).max() <= 100 * EPSILON * 20.0  # coordinates of up to 20 R
+    slips = [np.abs(slips_of(turned_as_one(made, angle))) for angle in (1e-3, 5e-4, 2.5e-4)]
+    assert slips[0].max() < 10.0 * 1e-3**2
+    assert slips[0].max() / slips[1].max() == pytest.approx(4.0, rel=0.02)
+    assert slips[1].max() / slips[2].max() == pytest.approx(4.0, rel=0.02)
 
 
-def same_after(made: Case, change: str) -> tuple[Case, Floats, float]:
-    """The case under a symmetry; how its forces on (x, y) transform (2, 2); and the sign of spin."""
-    matrix, parity = np.eye(2), 1.0
+def test_carrying_everything_along_is_no_slip() -> None:
+    made = case(5)
+    packing, place = made.before.copy(), made.placed.copy()
+    packing.state[:2] += np.array([[0.11], [-0.07]])
+    place[:, :2] += 0.11, -0.07
+    still = np.zeros(len(packing))
+    moved = Case(made.before, made.world, made.placed, Friction(MU, 20), packing, still, place)
+    assert slips_of(moved).max() <= 200 * EPSILON
+
+
+@pytest.mark.parametrize("share", [0.0, 0.4])
+def test_an_ellipse_that_turns_on_a_plate_counts_its_turn_once(share: float) -> None:
+    """Shape and spin turned together by α: its material has gone by h α. The spin alone: by a b α / h. Both to second order."""
+    packing = Packing([0.0], [0.95], 1.0, 0.3, 50.0)
+    packing.set_axes(1.0 + 0.3 * share, 1.0 - 0.2 * share, 0.4)
+    world = RigidWorld([RigidBody("floor", segments=[(-9.0, 0.0, 9.0, 0.0, 0.0)])])
+    placed = world.placement()
+    (a,), (b,) = packing.semi_axes
+    h = float(np.hypot(*(stretch(packing.state[2:, 0]) @ [0.0, 1.0])))
+    for angle in (1e-4, -1e-4):
+        for both in (True, False):
+            moved = packing.copy()
+            if both:
+                turn_shapes(moved.state, angle)
+            made = Case(packing, world, placed, Friction(10.0, 1), moved, np.full(1, angle), placed)
+            expected = angle * (h if both else float(a * b) / h)
+            assert slips_of(made) == pytest.approx([expected], abs=angle**2)
+    if share:
+        assert abs(h - float(a * b) / h) > 0.01
+
+
+def test_rough_plates_resist_a_shear_of_the_grain_between_them() -> None:
+    """q2 from 0 to 0.07 R carries the material at the plates by ∓ q2 p/h, which they hold with k_t each; nothing slides at μ = 10.
+
+    So f = ∓ k_t q2 p/h on the grain, 1.746 k R, −2 k_t q2 p²/h² on q2 and 2 k_t q2 p ab/h² on the spin, with h² = p² + q2²:
+    rolled by q2 p/ab, it no longer slips.
+    """
+    packing = Packing([0.0], [0.0], 1.0, 0.3, 50.0)
+    plates = [
+        RigidBody(name, position=(0.0, y), segments=[(-9.0, 0.0, 9.0, 0.0, 0.0)])
+        for name, y in (("floor", -0.9), ("top", 0.9))
+    ]
+    world = RigidWorld(plates)
+    sheared = packing.copy()
+    sheared.state[4] = 0.07
+    placed = world.placement()
+    made = Case(packing, world, placed, Friction(10.0, 1), sheared, np.zeros(1), placed)
+    energy, forces = made.forces()
+    h = math.hypot(1.0, 0.07)
+    pull = TANGENTIAL_STIFFNESS * 50.0 * 0.07 / h
+    assert pull == pytest.approx(1.7457, abs=1e-4)
+    expected = [0.0, 0.0, -2.0 * pull / h, 2.0 * pull * (1.0 - 0.07**2) / h]
+    assert forces[[0, 1, 4, 5], 0] == pytest.approx(expected, abs=1e-12)
+    assert energy == pytest.approx(pull * 0.07 / h, rel=1e-12)
+    held = made.relaxation().slips()[2]
+    assert sorted(held.fx) == pytest.approx([-pull, pull], rel=1e-12)
+    rolled = replace(made, turned=np.full(1, 0.07 / (1.0 - 0.07**2)))
+    assert np.abs(rolled.forces()[1]).max() < 1e-12
+
+
+def test_a_new_contact_begins_at_nothing() -> None:
+    """Open by g⁰ at the origin, it holds the share Δ/(Δ + g⁰) of the way that its surfaces have gone: none as they meet."""
+    before = Packing([0.0, 2.01], [0.0, 0.0])
+    none = np.zeros((0, 3))
+    for overlap in (1e-9, 1e-4, 0.01):
+        moved = before.copy()
+        moved.state[0, 1] = 2.0 - overlap
+        made = Case(before, RigidWorld(), none, Friction(10.0, 2), moved, np.full(2, 1e-4), none)
+        way = 2e-4 * (1.0 - 0.5 * overlap)
+        expected = overlap / (overlap + 0.01) * way
+        assert slips_of(made) == pytest.approx([expected], rel=1e-6)
+
+
+# Symmetries.
+
+
+def same_after(made: Case, change: str) -> tuple[Case, Floats]:
+    """The case under a symmetry, and how its forces (6, N) transform, (6, 6)."""
+    transform, parity, angle = np.eye(6), 1.0, 0.7
     if change == "mirror":
-        matrix, parity = np.diag([-1.0, 1.0]), -1.0
-    elif change == "rotation":
-        c, s = math.cos(0.7), math.sin(0.7)
-        matrix = np.array([[c, -s], [s, c]])
-    packing = made.packing.copy()
-    packing.state[:2] = matrix @ packing.state[:2]
-    if change == "mirror":
-        packing.state[4] *= -1.0
-    elif change == "rotation":
-        c, s = math.cos(1.4), math.sin(1.4)
-        packing.state[3:] = np.array([[c, -s], [s, c]]) @ packing.state[3:]
-    return Case(packing, made.world, made.before, made.after, made.friction), matrix, parity
+        parity = -1.0
+        transform = np.diag([-1.0, 1.0, 1.0, 1.0, -1.0, -1.0])
+    else:
+        transform[:2, :2], transform[3:5, 3:5] = rotation(angle), rotation(2.0 * angle)
+    before, packing = made.before.copy(), made.packing.copy()
+    for grains in (before, packing):
+        grains.state[:] = transform[:5, :5] @ grains.state
+    friction = made.friction.copy()
+    friction._slips = parity * friction._slips
+    turned = parity * made.turned
+    other = Case(before, made.world, made.placed, friction, packing, turned, made.place)
+    return other, transform
 
 
 @pytest.mark.parametrize("change", ["mirror", "rotation"])
-def test_symmetries(change: str) -> None:
-    made = case(2, bodies=False)
-    other, matrix, parity = same_after(made, change)
-    other.friction = made.friction.copy()
-    other.friction._slips = parity * other.friction._slips
-    _, forces = evaluate(made.freeze().terms, made.packing, np.zeros(20))
-    _, transformed = evaluate(other.freeze().terms, other.packing, np.zeros(20))
+@pytest.mark.parametrize("size", [0.003, 0.3])
+def test_symmetries(change: str, size: float) -> None:
+    made = case(2, size, bodies=False)
+    other, transform = same_after(made, change)
+    _, forces = made.forces()
+    _, transformed = other.forces()
     assert np.abs(forces).max() > 1.0
-    scale = np.abs(forces).max()
-    assert np.abs(transformed[:2] - matrix @ forces[:2]).max() <= RELATIVE * scale
-    assert np.abs(transformed[2] - parity * forces[2]).max() <= RELATIVE * scale
+    scale = np.abs(made.relaxation().forces()).max()
+    assert np.abs(transformed - transform @ forces).max() <= RELATIVE * scale
 
 
 def permuted(packing: Packing, order: NDArray[np.int64]) -> Packing:
@@ -327,22 +483,176 @@ def test_permutation() -> None:
     """Grains in another order find their memories by their labels."""
     made = case(4)
     order = np.random.default_rng(0).permutation(20)
-    other = Case(
-        permuted(made.packing, order), made.world, made.before, made.after, made.friction.copy()
+    other = replace(
+        made,
+        before=permuted(made.before, order),
+        packing=permuted(made.packing, order),
+        turned=made.turned[order],
+        friction=made.friction.copy(),
     )
-    _, forces = evaluate(made.freeze().terms, made.packing, np.zeros(20))
-    _, shuffled = evaluate(other.freeze().terms, other.packing, np.zeros(20))
-    assert np.abs(shuffled - forces[:, order]).max() <= RELATIVE * np.abs(forces).max()
+    _, forces = made.forces()
+    _, shuffled = other.forces()
+    scale = np.abs(made.relaxation().forces()).max()
+    assert np.abs(shuffled - forces[:, order]).max() <= RELATIVE * scale
 
 
 @FEW
 @given(st.integers(0, 1000), st.floats(0.0, 1.0))
 def test_never_beyond_the_cap(seed: int, size: float) -> None:
-    made = case(seed % 20)
-    terms = made.freeze().terms
-    evaluate(terms, *wander(made.packing, seed, size))
-    assert np.all(np.abs(terms.pull) <= terms.cap)
-    assert terms.stiffness[: terms.pairs[0]].max() <= TANGENTIAL_STIFFNESS * 200.0
+    """Against normal forces that are measured on the packing, not taken from the kernel."""
+    made = case(seed % 20, size, move=size)
+    forces = made.relaxation().slips()[2]
+    made.world.place(made.place)
+    pairs = observables.grain_contacts(made.packing)
+    bodies = observables.body_contacts(made.packing, made.world.primitives()[0])
+    assert len(forces.i) == len(pairs.i) + len(bodies.grain)
+    assert forces.beyond_cone(MU / 1.05 * (1.0 + 1e-12), pairs, bodies) == 0.0
+    if size > 0.01:
+        assert forces.beyond_cone(MU / 1.05 * (1.0 - 1e-9), pairs, bodies) > 0.0
+
+
+# New lists, corners and cells: nothing jumps.
+
+
+def again(relaxation: Relaxation) -> Floats:
+    """Forces (6, N) of the state as it is, after new lists have been made for it."""
+    relaxation._relist()
+    fire.evaluate(
+        relaxation._minimizer,
+        relaxation._box,
+        relaxation._rigid,
+        relaxation.friction_terms,
+        None,
+        None,
+    )
+    return relaxation.forces()
+
+
+@pytest.mark.parametrize("size", [0.003, 0.3])
+@pytest.mark.parametrize("seed", range(4))
+def test_new_lists_leave_forces_as_they_are(seed: int, size: float) -> None:
+    """What contacts hold is committed: sticking, sliding and new ones, twice over."""
+    made = case(seed, size, move=size)
+    relaxation = made.relaxation()
+    before = relaxation.forces()
+    slips = relaxation.slips()
+    tolerance = RELATIVE * np.abs(before).max()
+    for _ in range(2):
+        assert np.abs(again(relaxation) - before).max() <= tolerance
+        later = relaxation.slips()
+        assert np.array_equal(later[0], slips[0])
+        assert np.abs(later[1] - slips[1]).max() <= RELATIVE
+
+
+def follow(made: Case, path: Floats, *, commit: bool) -> Floats:
+    """Forces of friction (T, 6) on the first grain of ``made`` as its centre goes along ``path`` (T, 2), without turning."""
+    found = []
+    for x, y in path:
+        packing = made.packing.copy()
+        packing.state[:2, 0] = x, y
+        step = replace(made, packing=packing)
+        found.append(step.forces()[1][:, 0])
+        if commit:
+            keys, slips, _ = step.relaxation().slips()
+            made.friction.end(keys, slips, np.zeros(len(packing)))
+            made = replace(made, before=packing)
+    return np.array(found)
+
+
+def round_the_end(steps: int, *, commit: bool, polygon: bool, meets: bool = False) -> Floats:
+    """A tilted ellipse dragged along a side, over its corner and down, and pressed on all the while.
+
+    ``meets``: two other plates end where this one does, below it.
+    """
+    body = RigidBody("plate", segments=[(-6.0, 0.0, 0.0, 0.0, 0.3)])
+    if polygon:
+        body = RigidBody(
+            "plate", polygons=[(((-6.0, -4.0), (0.0, -4.0), (0.0, 0.0), (-6.0, 0.0)), 0.3)]
+        )
+    others = [
+        RigidBody(name, segments=[(0.0, 0.0, x, -4.0, 0.3)])
+        for name, x in (("under", -3.0), ("below", -2.0))
+    ]
+    world = RigidWorld([*others, body] if meets else [body])
+    packing = Packing([-0.3], [1.2], 1.0, 0.3, 50.0)
+    packing.set_axes(1.1, 0.95, 0.6)
+    s = np.linspace(-0.3, 0.9 if polygon else 0.5, steps)
+    angle = np.clip(s, 0.0, None) / 1.2 * 2.0
+    path = np.array([np.minimum(s, 0.0) + 1.2 * np.sin(angle), 1.2 * np.cos(angle)]).T
+    placed = world.placement()
+    made = Case(packing, world, placed, Friction(10.0, 1), packing, np.zeros(1), placed)
+    return follow(made, path, commit=commit)
+
+
+@pytest.mark.parametrize(
+    ("commit", "polygon"), [(False, False), (True, False), (True, True)], ids=str
+)
+def test_no_jump_at_a_corner(commit: bool, polygon: bool) -> None:
+    """From a side onto the corner at its end, and on to the next side: the change a step goes to zero with the step."""
+    most = [
+        np.abs(np.diff(round_the_end(steps, commit=commit, polygon=polygon), axis=0)).max()
+        for steps in (60, 120)
+    ]
+    assert most[0] < 4.0
+    assert most[1] == pytest.approx(0.5 * most[0], rel=0.15)
+
+
+def test_no_jump_at_a_corner_where_other_plates_end() -> None:
+    """The corner is that of its own plate, however many there are in that place."""
+    most = [
+        np.abs(np.diff(round_the_end(steps, commit=True, polygon=False, meets=True), axis=0)).max()
+        for steps in (60, 120)
+    ]
+    assert most[1] == pytest.approx(0.5 * most[0], rel=0.15)
+
+
+@pytest.mark.parametrize("commit", [False, True])
+def test_no_jump_where_a_grain_crosses_the_edge_of_a_cell(commit: bool) -> None:
+    """Along a wall that runs through the cell: as in the open, also where another image becomes the nearest to the wall."""
+    path = np.array([np.linspace(4.2, 4.8, 13), np.full(13, 0.95)]).T
+    found = []
+    for box, away in ((None, 0.0), (PeriodicBox(9.0), 0.0), (PeriodicBox(9.0), 18.0)):
+        world = RigidWorld([RigidBody("floor", segments=[(-7.0, 0.0, 7.0, 0.0, 0.0)])])
+        packing = Packing([4.1 + away], [0.95], 1.0, 0.3, 50.0, box=box)
+        packing.set_axes(1.1, 0.95, 0.6)
+        placed = world.placement()
+        made = Case(packing, world, placed, Friction(10.0, 1), packing, np.zeros(1), placed)
+        found.append(follow(made, path + [away, 0.0], commit=commit))
+    assert np.abs(found[0]).max() > 1.0
+    for other in found[1:]:
+        assert np.abs(other - found[0]).max() < 1e-11
+
+
+@given(st.integers(-2, 2), st.integers(-2, 2), st.integers(-2, 2), st.integers(-2, 2))
+@FEW
+def test_no_jump_where_grains_cross_the_edge_of_a_sheared_cell(
+    across: int, up: int, later_across: int, later_up: int
+) -> None:
+    """Two grains in a cell whose shift changes, stored in any image before and in any other after: as the same two in the open.
+
+    Of the images that touch, the way counts that they have gone.
+    """
+    here, there, mu = np.array([4.0, 4.5]), np.array([5.5, 5.6]), 10.0
+    none, still = np.zeros((0, 3)), np.zeros(2)
+    way = np.array([0.013, -0.004])
+
+    def made(cells: tuple[PeriodicBox | None, PeriodicBox | None]) -> Case:
+        packings = []
+        for box, on, (k, m) in zip(
+            cells, (0.0, 1.0), ((across, up), (later_across, later_up)), strict=True
+        ):
+            second = there + on * way
+            if box is not None:
+                second = second + [k * box.width + m * box.shift, m * box.height]
+            packing = Packing(*zip(here, second, strict=True), 1.0, 0.3, 50.0, box=box)
+            packing.set_axes([1.1, 1.0], [0.95, 1.05], [0.6, -0.3])
+            packings.append(packing)
+        return Case(packings[0], RigidWorld(), none, Friction(mu, 2), packings[1], still, none)
+
+    _, expected = made((None, None)).forces()
+    _, forces = made((PeriodicBox(9.0, 9.5, 8.8), PeriodicBox(9.0, 9.5, 9.1))).forces()
+    assert np.abs(expected).max() > 0.1
+    assert np.abs(forces - expected).max() < 1e-11
 
 
 # What contacts remember.
@@ -350,71 +660,84 @@ def test_never_beyond_the_cap(seed: int, size: float) -> None:
 
 def test_memory_is_written_and_found_again() -> None:
     made = case(6)
-    frozen = made.freeze()
-    moved, turned = wander(made.packing, 6, 0.01)
-    evaluate(frozen.terms, moved, turned)
-    pulls = frozen.terms.pull.copy()
-    answer = made.friction.end(frozen, moved, turned)
-    assert np.hypot(answer.fx, answer.fy) == pytest.approx(np.abs(pulls), abs=1e-11)
-    assert np.array_equal(answer.sliding, np.abs(pulls) == frozen.terms.cap)
-    remembered = made.friction.remembered()
-    assert len(remembered) == len(frozen.keys)
-    limit = frozen.terms.cap / frozen.terms.stiffness
+    relaxation = made.relaxation()
+    keys, slips, answer = relaxation.slips()
+    contacts = {one.labels: one for one in made.contacts()}
     label = made.packing.label
-    for k in range(len(frozen.keys)):
-        i, j = int(label[frozen.terms.i[k]]), int(frozen.terms.j[k])
-        key = (i, -1 - int(frozen.primitive[k]))
-        if j >= 0:
-            key = (min(i, int(label[j])), max(i, int(label[j])))
-        assert abs(remembered[key]) <= limit[k]
-        assert remembered[key] == pytest.approx(pulls[k] / frozen.terms.stiffness[k], abs=1e-13)
-    assert np.array_equal(made.friction.spin, turned)
+    made.friction.end(keys, slips, made.turned)
+    remembered = made.friction.remembered()
+    assert set(remembered) == set(contacts)
+    for labels, one in contacts.items():
+        assert remembered[labels] == pytest.approx(one.pull / one.stiffness, abs=1e-13)
+    assert len(answer.i) == len(contacts)
+    for k in range(len(answer.i)):
+        i, j = int(label[answer.i[k]]), int(answer.j[k])
+        one = contacts[
+            (i, -1 - int(answer.primitive[k]))
+            if j < 0
+            else (min(i, int(label[j])), max(i, int(label[j])))
+        ]
+        side = 1.0 if int(label[one.i]) == i else -1.0
+        on_i = side * one.pull * np.array([one.n[1], -one.n[0]])
+        assert [answer.fx[k], answer.fy[k]] == pytest.approx(on_i, abs=1e-11)
+        if side > 0.0:
+            assert [answer.x[k], answer.y[k]] == pytest.approx(one.at, abs=1e-13)
+        assert answer.sliding[k] == one.sliding
+    assert np.array_equal(made.friction.spin, made.turned)
+
+
+def stay(friction: Friction, packing: Packing, before: Packing | None = None) -> FrictionForces:
+    """An increment in which grains go from ``before``, or nothing moves, and what is left is remembered."""
+    none, still = np.zeros((0, 3)), np.zeros(len(packing))
+    made = Case(before or packing, RigidWorld(), none, friction, packing, still, none)
+    keys, slips, forces = made.relaxation().slips()
+    friction.end(keys, slips, still)
+    return forces
 
 
 def test_memory_of_lost_contacts_is_dropped_and_new_ones_begin_at_nothing() -> None:
     packing = Packing([0.0, 1.9, 3.8], [0.0, 0.0, 0.0])
     friction = Friction(MU, 3)
-    none = np.zeros((0, 3))
-    remember(friction, freeze(friction, packing, RigidWorld(), none, none), packing, 1)
+    remember(friction, packing, RigidWorld(), 1)
     assert set(friction.remembered()) == {(0, 1), (1, 2)}
     kept = friction.remembered()[1, 2]
     assert kept != 0.0
     packing.state[1, 0] = 3.0
-    frozen = freeze(friction, packing, RigidWorld(), none, none)
-    friction.end(frozen, packing, np.zeros(3))
+    stay(friction, packing)
     assert friction.remembered() == {(1, 2): pytest.approx(kept, abs=1e-15)}
     packing.state[1, 0] = 0.0
-    frozen = freeze(friction, packing, RigidWorld(), none, none)
-    friction.end(frozen, packing, np.zeros(3))
+    stay(friction, packing)
     assert friction.remembered() == {(0, 1): 0.0, (1, 2): pytest.approx(kept, abs=1e-15)}
 
 
 def test_a_lighter_contact_remembers_less() -> None:
-    """Where the normal force has fallen, the memory shrinks to what the new cap can hold: energy is lost, never made."""
+    """Where the normal force falls, the memory shrinks to what the cap can hold, in the same increment."""
     packing = Packing([0.0, 1.8], [0.0, 0.0])
     friction = Friction(MU, 2)
-    none = np.zeros((0, 3))
-    remember(friction, freeze(friction, packing, RigidWorld(), none, none), packing, 2)
+    remember(friction, packing, RigidWorld(), 2)
     (before,) = friction.remembered().values()
-    packing.state[0, 1] = 1.999
-    frozen = freeze(friction, packing, RigidWorld(), none, none)
-    friction.end(frozen, packing, np.zeros(2))
+    lighter = packing.copy()
+    lighter.state[0, 1] = 1.999
+    forces = stay(friction, lighter, packing)
     (after,) = friction.remembered().values()
     assert after == pytest.approx(math.copysign(MU * 0.001 / TANGENTIAL_STIFFNESS, before))
     assert abs(after) < abs(before)
+    assert forces.sliding.all()
 
 
 def test_grains_leave() -> None:
     made = case(7)
+    made = replace(made, packing=made.before, turned=np.zeros(20), place=made.placed)
     keep = np.ones(20, dtype=bool)
     keep[[0, 5, 11]] = False
     before = made.friction.remembered()
     made.friction.spin = np.arange(20.0)
     made.friction.select(keep)
     assert np.array_equal(made.friction.spin, np.arange(20.0)[keep])
-    made.packing = made.packing.select(keep)
-    made.after = made.before
-    made.friction.end(made.freeze(), made.packing, np.zeros(17))
+    left = made.before.select(keep)
+    made = replace(made, before=left, packing=left, turned=np.zeros(17))
+    keys, slips, _ = made.relaxation().slips()
+    made.friction.end(keys, slips, np.zeros(17))
     after = made.friction.remembered()
     expected = {k for k in before if not {0, 5, 11} & set(k)}
     assert set(after) == expected
@@ -462,11 +785,10 @@ def box_of_grains(count: int = 25) -> tuple[Packing, RigidWorld]:
 CAREFUL = Settings(step=0.05, tolerance=1e-4, max_iterations=20_000)
 
 
-def sheared(slices: list[int], skin: float = 0.3) -> Quasistatic:
+def sheared(slices: list[int]) -> Quasistatic:
     """The plate goes forth by 0.25 R; every increment cut into slices of so many iterations."""
     packing, world = box_of_grains()
-    settings = Settings(step=0.05, tolerance=1e-4, skin=skin, max_iterations=20_000)
-    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
+    engine = Quasistatic(System(packing, world, CAREFUL, Friction(MU, len(packing))))
     for _ in range(6):
         engine.begin({"plate": (0.25, world["plate"].position[1])})
         turn = 0
@@ -485,20 +807,49 @@ def test_slices_change_nothing() -> None:
         assert cut.friction.hash() == whole.friction.hash()
 
 
-def test_memory_survives_new_lists() -> None:
-    """A skin of a hundredth rebuilds the lists again and again; the path is then rounded otherwise, and stays the same.
+def sheared_on(step: float, skin: float) -> tuple[Quasistatic, int]:
+    """A settled packing sheared in five increments of ``step``: the engine, and how often new lists came in the middle of one."""
+    packing, world = box_of_grains()
+    settings = Settings(step=0.05, tolerance=1e-6, max_iterations=20_000)
+    engine = Quasistatic(System(packing, world, settings, Friction(MU, len(packing))))
+    renewed = 0
+    for k in range(7):
+        targets = {"plate": (0.25, world["plate"].position[1])} if k > 1 else {}
+        if k == 2:
+            engine.system.solver = replace(settings, step=step, skin=skin)
+        engine.begin(targets)
+        relaxation = engine.relaxation
+        assert relaxation is not None
+        first = None
+        while engine.relax(1) is None:
+            first = relaxation.friction_terms if first is None else first
+            if relaxation.friction_terms is not first:
+                first = relaxation.friction_terms
+                renewed += k > 1
+    return engine, renewed
 
-    Both ways end within the tolerance of one equilibrium: 1e-4 of a mean contact force of 0.08 k R, over a softest
-    stiffness of some 0.1 k, is 1e-4 R.
+
+def test_memory_survives_new_lists() -> None:
+    """A skin of a hundredth takes other lists, and the answer is the same as long as none are made in the middle of an increment.
+
+    Where they are, what contacts hold by then is remembered, and so is what has slid on the minimiser's way: the answer then is
+    another equilibrium, near by. Measured in steps of 0.005 R: 2e-4 R, and 2e-3 of the forces.
     """
-    seldom, often = sheared([20_000]), sheared([20_000], skin=0.003)
-    assert np.abs(seldom.packing.state - often.packing.state).max() < 1e-4
-    assert seldom.friction is not None
-    assert often.friction is not None
-    mine, theirs = seldom.friction.remembered(), often.friction.remembered()
+    seldom, often = sheared_on(0.001, 0.3), sheared_on(0.001, 0.003)
+    assert seldom[1] == often[1] == 0
+    assert np.abs(seldom[0].packing.state - often[0].packing.state).max() < 1e-10
+    for engine in (seldom[0], often[0]):
+        assert engine.friction is not None
+    mine, theirs = (e.friction.remembered() for e, _ in (seldom, often) if e.friction is not None)
     assert set(mine) == set(theirs)
     assert max(abs(v) for v in mine.values()) > 1e-3
-    assert max(abs(mine[k] - theirs[k]) for k in mine) < 1e-4
+    assert max(abs(mine[k] - theirs[k]) for k in mine) < 1e-10
+    seldom, often = sheared_on(0.005, 0.3), sheared_on(0.005, 0.003)
+    assert seldom[1] == 0
+    assert often[1] > 0
+    assert np.abs(seldom[0].packing.state - often[0].packing.state).max() < 1e-3
+    scale = np.abs(seldom[0].reactions).max()
+    assert np.abs(seldom[0].reactions - often[0].reactions).max() < 0.01 * scale
 
 
 @pytest.mark.parametrize("reason", [StopReason.COLLAPSED, StopReason.NOT_FINITE])
@@ -536,7 +887,7 @@ def test_off_leaves_no_trace() -> None:
     assert relaxation is not None
     engine.relax(20_000)
     assert relaxation._friction is None
-    assert engine._frozen is None
+    assert relaxation.friction_terms is None
     for array in relaxation._minimizer[:5]:
         assert array.shape[0] == (3 if array is relaxation._minimizer.support else 5)
     for signature in fire.run.signatures:
@@ -559,10 +910,8 @@ def test_impossible_labels(label: list[int]) -> None:
     """A memory is found by a number made of both labels: they must fit."""
     with pytest.raises(InputError, match="from 0 to 1073741823"):
         Packing([0.0, 1.0], [0.0, 0.0], label=label)
-    largest = Packing([0.0, 1.9], [0.0, 0.0], label=[2**30 - 1, 0])
     friction = Friction(MU, 2)
-    none = np.zeros((0, 3))
-    friction.end(freeze(friction, largest, RigidWorld(), none, none), largest, np.zeros(2))
+    stay(friction, Packing([0.0, 1.9], [0.0, 0.0], label=[2**30 - 1, 0]))
     assert set(friction.remembered()) == {(0, 2**30 - 1)}
 
 
@@ -570,10 +919,9 @@ def test_impossible_labels(label: list[int]) -> None:
 def test_nan_is_found(row: int) -> None:
     """Also through the bounds of the force, which would turn it into the cap."""
     made = case(3)
-    terms = made.freeze().terms
-    relaxation = Relaxation(made.packing, made.world.primitives()[0], terms)
-    relaxation.run(1)
-    (place,) = np.flatnonzero(relaxation._minimizer.identity == terms.i[0])
+    relaxation = made.relaxation()
+    grain = relaxation.slips()[2].i[0]
+    (place,) = np.flatnonzero(relaxation._minimizer.identity == grain)
     relaxation._minimizer.state[row, place] = np.nan
     assert relaxation.run(1).reason is StopReason.NOT_FINITE
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from core import observables
-from core.friction import TANGENTIAL_STIFFNESS, Friction
+from core.friction import Friction
 from core.packing import Packing
 from core.quasistatic import Increment, Quasistatic
-from core.relaxation import Relaxation, StopReason
+from core.relaxation import StopReason
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
+from core.slip import TANGENTIAL_STIFFNESS
 from core.system import System
 from tests.core import examples
 
@@ -25,12 +25,10 @@ TANGENTIAL = TANGENTIAL_STIFFNESS * STIFFNESS
 def go(
     engine: Quasistatic, targets: dict[str, Point], *, rolls: bool = True, converges: bool = True
 ) -> Increment:
-    """One whole increment. ``rolls`` False takes the levers away, as if the grains could not turn: they are blocks then."""
+    """One whole increment. ``rolls`` False: grains neither turn nor shear, as if spin and q2 were infinitely heavy; blocks."""
     engine.begin(targets)
     if not rolls:
-        assert engine._frozen is not None
-        engine._frozen.terms.arm_i[:] = 0.0
-        engine._frozen.terms.arm_j[:] = 0.0
+        hold(engine)
     increment = engine.relax(engine.system.solver.max_iterations)
     assert increment is not None
     if converges:
@@ -38,11 +36,25 @@ def go(
     return increment
 
 
-def plate(name: str, y: float, axis: Point) -> RigidBody:
+def hold(engine: Quasistatic) -> None:
+    """Relax all but q2 and spins, which get no part of the residual."""
+    relaxation = engine.relaxation
+    assert relaxation is not None
+    relaxation._minimizer.inverse_mass[4:] = 1e-30
+    reason = StopReason.BUDGET
+    while reason is StopReason.BUDGET:
+        report = relaxation.run(1)
+        reason = report.reason
+        left = float(np.abs(relaxation._minimizer.force[:4]).max())
+        if left <= engine.system.solver.tolerance * report.mean_contact_force:
+            reason = relaxation._reason = StopReason.CONVERGED
+
+
+def plate(name: str, y: float, axis: Point, reach: float = 60.0) -> RigidBody:
     return RigidBody(
         name,
         position=(0.0, y),
-        segments=[(-60.0, 0.0, 60.0, 0.0, 0.0)],
+        segments=[(-reach, 0.0, reach, 0.0, 0.0)],
         axis=axis,
     )
 
@@ -51,10 +63,13 @@ def plate(name: str, y: float, axis: Point) -> RigidBody:
 
 
 def pulled(gx: float, weight: float, mu: float) -> tuple[float, Increment]:
-    """A block on the floor, settled under its weight and then pulled sideways: (how far it went [R], the increment)."""
+    """A block on the floor, settled under its weight and then pulled sideways: (how far it went [R], the increment).
+
+    It is held where it touches the floor now, not where it touched before, so the floor is as long as a block can slide.
+    """
     packing = Packing([0.0], [1.0], 1.0, 0.3, STIFFNESS)
     settings = Settings(0.05, 1e-7, force_floor=1e-6, max_iterations=4_000)
-    world = RigidWorld([plate("floor", 0.0, (1.0, 0.0))])
+    world = RigidWorld([plate("floor", 0.0, (1.0, 0.0), 500.0)])
     engine = Quasistatic(System(packing, world, settings, Friction(mu, 1), (0.0, -weight)))
     go(engine, {}, rolls=False)
     go(engine, {}, rolls=False)
@@ -86,9 +101,10 @@ def test_a_block_sticks(share: float, mu: float, weight: float) -> None:
 @pytest.mark.parametrize("mu", [0.1, 0.5, 1.2])
 @pytest.mark.parametrize("share", [1.0 + 1e-5, -1.0 - 1e-5, 1.5])
 def test_a_block_slides(share: float, mu: float, weight: float) -> None:
-    """Beyond it nothing holds the block: no equilibrium is found, and the residual is the force that is left over.
+    """Beyond it nothing holds the block: no equilibrium is found, and a force is left over.
 
-    The force of friction is μ f_n, with the f_n of the settled block, known to the tolerance of 1e-7.
+    The force of friction is μ f_n, with the f_n of this very state to rounding; and as no equilibrium is found, that is the weight
+    only as nearly as the block has come to rest up and down: to 4e-7. Once it was the f_n of the settled block, good to 1e-7.
     """
     moved, increment = pulled(share * mu * weight, weight, mu)
     assert increment.report.reason is StopReason.ITERATION_LIMIT
@@ -96,10 +112,35 @@ def test_a_block_slides(share: float, mu: float, weight: float) -> None:
     assert moved * share > mu * weight / TANGENTIAL
     assert increment.friction is not None
     assert increment.friction.sliding[0]
-    assert abs(increment.friction.fx[0]) == pytest.approx(mu * weight, rel=2e-7)
+    (normal,) = increment.body_contacts.normal_force
+    assert abs(increment.friction.fx[0]) == pytest.approx(mu * normal, rel=1e-12)
+    assert normal == pytest.approx(weight, rel=1e-6)
     if abs(share) < 1.1:
         left_over = (abs(share) - 1.0) * mu
-        assert increment.report.residual == pytest.approx(left_over, rel=0.05)
+        assert increment.unbalanced[0] == pytest.approx(left_over * weight, rel=0.05)
+
+
+# A pile.
+
+
+def pile(mu: float) -> float:
+    """Three cylinders, one upon two that touch, under their weight: how far the upper one has come down [R]."""
+    packing = Packing([-1.0, 1.0, 0.0], [1.0, 1.0, 1.0 + math.sqrt(3.0)], 1.0, 0.3, STIFFNESS)
+    settings = Settings(0.05, 1e-6, force_floor=1e-6, max_iterations=20_000)
+    world = RigidWorld([plate("floor", 0.0, (1.0, 0.0))])
+    engine = Quasistatic(System(packing, world, settings, Friction(mu, 3), (0.0, -1e-4)))
+    for _ in range(3):
+        go(engine, {}, converges=False)
+    return 1.0 + math.sqrt(3.0) - float(packing.y[2])
+
+
+def test_three_cylinders_stand_from_tan_15_on() -> None:
+    """The lower two are held by friction alone: the force of the upper one goes through the point where each touches the floor,
+    15° off the normal of its contact, so μ must be tan 15° = 0.26795. Measured to 1e-4 of that.
+    """
+    needed = math.tan(math.radians(15.0))
+    assert pile(needed + 2e-4) < 1e-3
+    assert pile(needed - 2e-4) > 0.1
 
 
 # Plates over grains.
@@ -131,36 +172,35 @@ def square(side: int, mu: float | None, pitch: float = 1.75) -> Quasistatic:
 
 
 def settle(engine: Quasistatic) -> None:
-    """Repeat the lag until nothing slips any more: it comes to rest geometrically, after some 16 rounds."""
-    for _ in range(60):
-        before = engine.packing.state.copy()
-        go(engine, {})
-        if np.array_equal(engine.packing.state, before):
-            return
-    raise AssertionError("the lagged caps do not come to rest")
+    """Relax, and see that what has come to rest stays to the last bit: caps are those of the state, and nothing catches up."""
+    go(engine, {})
+    before = engine.packing.state.copy()
+    assert go(engine, {}).report.iterations == 1
+    assert np.array_equal(engine.packing.state, before)
 
 
 def test_a_plate_is_held_by_friction_and_no_more() -> None:
-    """A lid over blocks that end up against a wall: its sideways force is at most μ times what presses on it.
+    """A lid over blocks that end up against a wall: its sideways force is at most μ times what presses on it, in the same state.
 
-    The caps are those of the contacts at the start of each increment, so the law is exact with the normal forces then, but
-    for rounding. The limit is reached once all contacts slide.
+    Exact but for rounding, and no matter how long the step is, since the caps lag behind nothing. The limit is reached once all
+    contacts slide.
     """
     engine = square(5, MU)
     lid = engine.world.index("lid")
     at = engine.world["lid"].position
+    _, owner = engine.world.primitives()
     all_slide = 0
     for k in range(30):
-        _, contacts = engine.contacts()
-        _, owner = engine.world.primitives()
+        increment = go(engine, {"lid": (0.02 * (k + 1), at[1])}, rolls=False)
+        contacts = increment.body_contacts
         mine = owner[contacts.primitive] == lid
         pressing = float(contacts.normal_force[mine].sum())
-        increment = go(engine, {"lid": (0.02 * (k + 1), at[1])}, rolls=False)
         sideways = abs(float(increment.reactions[lid, 0]))
         assert increment.friction is not None
         friction = increment.friction
         on_lid = (friction.j < 0) & (owner[friction.primitive] == lid)
         assert on_lid.sum() == mine.sum()
+        assert friction.beyond_cone(MU, increment.grain_contacts, contacts) == 0.0
         assert sideways <= MU * pressing * (1.0 + 1e-12)
         if friction.sliding[on_lid].all():
             all_slide += 1
@@ -170,66 +210,64 @@ def test_a_plate_is_held_by_friction_and_no_more() -> None:
 
 @pytest.mark.parametrize("nu", [-0.8, 0.3])
 def test_rolling_without_slip(nu: float) -> None:
-    """Between two plates of which one moves by s a grain rolls: its centre goes s/2, and it turns by s/2h.
+    """Between two plates of which one moves by s a grain rolls: its centre goes s/2, and its material s h/2ab round its outline.
+
+    h is half its height. The ellipse that the plates make of it stays as it is, and its material goes round in it, at a plate by
+    ab/h for a turn by 1; with h for it, as the law was once, a grain of 10 % would turn by 10 % too little.
 
     No force is needed for that, so all that is left open is the tolerance of 1e-8 of a contact force of some 5 k R over
-    k_t = 25 k, in each of 30 increments; and h is constant, since the grain is the same ellipse all along.
+    k_t = 25 k, in each of 30 increments; and a, b and h are constant.
     """
     packing = Packing([0.0], [0.9], 1.0, nu, STIFFNESS)
     world = RigidWorld([plate("floor", 0.0, (1.0, 0.0)), plate("top", 1.8, (1.0, 0.0))])
     settings = Settings(0.05, 1e-8, force_floor=1e-6, max_iterations=20_000)
     engine = Quasistatic(System(packing, world, settings, Friction(MU, 1)))
     go(engine, {})
-    half_height = float(observables.support_coefficients(packing)[:2, 0] @ [1.0, -1.0]) ** 0.5
+    half_height = float(packing.p[0] - packing.q1[0])
     for k in range(30):
         increment = go(engine, {"top": (0.05 * (k + 1), 1.8)})
     left_open = 30 * 1e-8 * 5.0 / TANGENTIAL * 2.0
     assert engine.friction is not None
     assert packing.x[0] == pytest.approx(0.75, abs=left_open)
-    assert engine.friction.spin[0] == pytest.approx(-0.75 / half_height, abs=left_open)
+    lever = float(np.prod(packing.semi_axes)) / half_height
+    assert lever > 1.02 * half_height or nu < 0.0
+    assert engine.friction.spin[0] == pytest.approx(-0.75 / lever, abs=left_open)
     assert np.abs(increment.reactions[:, 0]).max() < 1e-7
 
 
 # Energy.
 
 
-def stored(engine: Quasistatic) -> float:
-    """Elastic energy of grains, contacts and tangential springs [k R²]."""
-    rows, _ = engine.world.primitives()
-    energy = Relaxation(engine.packing, rows).run(1).energy
-    if engine.friction is not None and engine._frozen is not None:
-        stiffness = engine._frozen.terms.stiffness[np.argsort(engine._frozen.keys, kind="stable")]
-        energy += 0.5 * float(np.sum(stiffness * engine.friction._slips**2))
-    return energy
-
-
 def cycle(engine: Quasistatic, body: str, reach: float, steps: int) -> tuple[float, float, float]:
     """Move a body forth, back and to where it was: (work of the hand, rise of the stored energy, least heat of an increment).
 
-    Work by the trapezoidal rule [k R²]; heat is work less rise.
+    Work by the trapezoidal rule [k R²]; heat is work less rise. The energy of a relaxation is all that is stored: in grains,
+    contacts and tangential springs.
     """
     at = engine.world[body].position
     k = engine.world.index(body)
-    first = before = stored(engine)
+    assert engine.latest is not None
+    first = before = engine.latest.report.energy
     force, place, work, least = float(engine.reactions[k, 0]), 0.0, 0.0, math.inf
     for step in range(1, steps + 1):
         x = reach * math.sin(2.0 * math.pi * step / steps)
         increment = go(engine, {body: (at[0] + x, at[1])})
         now = float(increment.reactions[k, 0])
         portion = -0.5 * (force + now) * (x - place)
-        after = stored(engine)
+        after = increment.report.energy
         work += portion
         least = min(least, portion - (after - before))
         force, place, before = now, x, after
     return work, after - first, least
 
 
-@pytest.mark.parametrize("steps", [24, 96])
+@pytest.mark.parametrize("steps", [24, 48, 96])
 def test_no_energy_from_nothing(steps: int) -> None:
     """A pressed packing of 25 grains, sheared forth and back by its lid, three times.
 
     Every increment turns work into stored energy and heat, and the heat is never negative but for the error of the
-    trapezoidal rule and the tolerance: 1e-8 of forces of 1 k R, over steps of 0.1 R.
+    trapezoidal rule and the tolerance: 1e-8 of forces of 1 k R, over steps of 0.1 R. Measured, it never was: least 2e-5, 3e-6
+    and 7e-7 k R².
     """
     engine = square(5, MU)
     heats = []
@@ -316,27 +354,25 @@ def curved_path_exactly() -> float:
     return pull
 
 
-def test_order_of_convergence_on_a_curved_path() -> None:
-    """The caps lag by one increment, so the error is that of a one-sided rule: of first order in the increment.
+@pytest.mark.parametrize("steps", [4, 16, 64])
+def test_a_curved_path_is_exact(steps: int) -> None:
+    """In few increments as in many: cap and tangent are those of the state, and what the block still holds at the end is its cap.
 
-    Measured: 0.96, 0.98, 0.99, and the limit is Coulomb's law.
+    An increment in which the block turns back counts the way that is left of it; that is forgotten where it slides again. Measured:
+    4e-8 k R of 0.105 from Coulomb's law at 4 to 128 increments, which is the error of the seventh-degree fit. With caps that lagged
+    it was of first order, and more than 1e-4 at 512.
     """
-    values = np.array([curved_path(n) for n in (32, 64, 128, 256, 512)])
-    assert orders(values) == pytest.approx(np.ones(3), abs=0.1)
-    # Extrapolated to no increment at all, which leaves the error of second order: the change of the last but one.
-    limit = 2.0 * values[-1] - values[-2]
-    assert limit == pytest.approx(curved_path_exactly(), abs=2e-5)
-    assert abs(values[-1] - limit) > 1e-4
+    assert curved_path(steps) == pytest.approx(curved_path_exactly(), abs=2e-7)
 
 
 def test_order_of_convergence_of_an_assembly() -> None:
-    """Nine grains sheared by a lid as far as no contact opens or closes, in 8 to 128 increments.
+    """Nine grains sheared by a lid as far as no contact opens or closes, in 8 to 64 increments.
 
-    Looked at are the force on the lid, and the place and spin of the grain in the middle. A contact that begins to slide does so
-    in the middle of an increment, at another place in each, so the order is less regular: measured 0.93 to 1.03.
+    Looked at are the force on the lid, and the place and spin of the grain in the middle. The order is the first: measured 0.96 to
+    1.02. What is left at 64 increments is 1e-8 of the force, no more than the tolerance, so that 128 would tell nothing of it.
     """
     values, touching = [], set()
-    for steps in (8, 16, 32, 64, 128):
+    for steps in (8, 16, 32, 64):
         engine = square(3, MU)
         at = engine.world["lid"].position
         for k in range(steps):
@@ -348,4 +384,4 @@ def test_order_of_convergence_of_an_assembly() -> None:
             [increment.reactions[1, 0], engine.packing.x[4], float(engine.friction.spin[4])]
         )
     assert len(touching) == 1
-    assert orders(np.array(values)) == pytest.approx(np.ones((3, 3)), abs=0.15)
+    assert orders(np.array(values)) == pytest.approx(np.ones((2, 3)), abs=0.1)

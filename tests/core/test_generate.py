@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core import generate, observables
@@ -59,6 +60,30 @@ def test_mean_area_is_that_of_the_grains() -> None:
     recipe = Recipe(small_fraction=0.25, size_ratio=2.0)
     radius, _ = recipe.grains(400, np.random.default_rng(1))
     assert np.pi * np.mean(radius**2) == pytest.approx(recipe.mean_area())
+
+
+@given(st.integers(1, 300), st.floats(0.0, 1.0), st.floats(1.0, 5.0), st.floats(0.0, 0.9))
+def test_radii_are_spread_evenly(count: int, small: float, ratio: float, width: float) -> None:
+    """Each size from 1 − width to 1 of it, without a random number: the area is that of the even spread."""
+    recipe = Recipe(small_fraction=small, size_ratio=ratio, size_width=width)
+    radius, nu = recipe.grains(count, np.random.default_rng(1))
+    plain, same_nu = replace(recipe, size_width=0.0).grains(count, np.random.default_rng(1))
+    assert np.array_equal(nu, same_nu)
+    share = radius / plain
+    assert np.all((share > 1.0 - width - 1e-12) & (share <= 1.0))
+    assert np.all(radius >= recipe.smallest * (1.0 - 1e-12))
+    for size in np.unique(plain):
+        found = np.sort(share[plain == size])
+        gap = width / len(found)
+        assert np.diff(found) == pytest.approx(np.full(len(found) - 1, gap), abs=1e-9)
+        assert found[-1] == pytest.approx(1.0 - 0.5 * gap)
+    few = round(count * small) if ratio > 1.0 else 0
+    kinds = [few, count - few]
+    numbers = Recipe(small_fraction=kinds[0] / count, size_ratio=ratio, size_width=width)
+    fewest = min((k for k in kinds if k), default=1)
+    assert np.pi * np.mean(radius**2) == pytest.approx(
+        numbers.mean_area(), rel=width**2 / (1.0 - width) / fewest**2 + 1e-12
+    )
 
 
 @pytest.mark.parametrize("kind", generate.KINDS)
@@ -193,6 +218,8 @@ def test_impossible_requests(request_: dict[str, object], message: str) -> None:
         {"auxetic_fraction": math.nan},
         {"regular_poisson_ratio": 1.0},
         {"contact_stiffness": 2.0},
+        {"size_width": 1.0},
+        {"size_width": -0.1},
     ],
 )
 def test_impossible_recipes(recipe: dict[str, object]) -> None:
@@ -211,3 +238,42 @@ def test_bodies_that_fill_the_container() -> None:
 def test_too_many_grains() -> None:
     with pytest.raises(InputError, match="do not fit"):
         pack(Recipe(), seed=1, outline=SQUARE, world=walled(SQUARE), count=800)
+
+
+@pytest.mark.parametrize("box", [None, PeriodicBox(22.0)], ids=["periodic", "walled"])
+def test_few_large_grains_among_many_small_ones(box: PeriodicBox | None) -> None:
+    """In the area of one large grain there is room for forty small ones and more, also where hardly any lie."""
+    recipe = Recipe(size_ratio=20.0, small_fraction=0.995)
+    outline: list[Point] | None = None
+    if box is not None:
+        outline = [(0.0, 0.0), (22.0, 0.0), (22.0, 22.0), (0.0, 22.0)]
+    packing = pack(recipe, seed=1, count=2000, packing_fraction=0.1, outline=outline, box=box)
+    assert len(packing) == 2000
+    assert np.sum(packing.rest_radius == 1.0) == 10
+    assert len(observables.grain_contacts(packing).i) == 0
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(0, 1000),
+    st.floats(1.0, 40.0),
+    st.floats(0.0, 1.0),
+    st.floats(0.02, generate.PLACED_FRACTION),
+    st.sampled_from([1.0, 0.3]),
+    st.integers(0, 99),
+)
+def test_any_mixture_is_placed(
+    count: int, ratio: float, small: float, fraction: float, flat: float, seed: int
+) -> None:
+    """No disc touches another, around the edges of the cell neither; all pairs are looked at here."""
+    recipe = Recipe(size_ratio=ratio, small_fraction=small)
+    random = np.random.default_rng(seed)
+    radius, _ = recipe.grains(count, random)
+    area = max(float(np.pi * np.sum(radius**2)) / fraction, (4.0 / flat) ** 2)
+    box = PeriodicBox(math.sqrt(area * flat), math.sqrt(area / flat))
+    x, y = generate._place(radius, None, RigidWorld(), box, random)
+    dx, dy = x[:, np.newaxis] - x, y[:, np.newaxis] - y
+    dx -= box.width * np.rint(dx / box.width)
+    dy -= box.height * np.rint(dy / box.height)
+    gap = np.hypot(dx, dy) - radius[:, np.newaxis] - radius
+    assert np.all(gap[~np.eye(count, dtype=bool)] >= 0.0)

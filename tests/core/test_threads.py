@@ -84,7 +84,7 @@ def test_one_and_two_threads_have_the_same_bits(periodic: bool) -> None:
 def test_an_increment_with_friction_on_two_threads() -> None:
     """Through the settings of a run, with every term of it; two chunks."""
 
-    def end(number: int) -> tuple[str, list[float]]:
+    def end(number: int) -> tuple[str, str, list[float]]:
         random = np.random.default_rng(5)
         count = CHUNK + 100
         place = np.arange(count)
@@ -112,7 +112,8 @@ def test_an_increment_with_friction_on_two_threads() -> None:
             assert increment is not None
             assert increment.report.reason in (StopReason.CONVERGED, StopReason.ITERATION_LIMIT)
             energies.append(increment.report.energy)
-        return packing.hash(), energies
+        assert engine.friction is not None
+        return packing.hash(), engine.friction.hash(), energies
 
     assert end(2) == end(1)
 

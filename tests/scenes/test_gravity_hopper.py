@@ -42,7 +42,7 @@ def test_a_wide_orifice_runs_empty_without_a_hand() -> None:
 
 
 def test_a_narrow_orifice_clogs_with_an_arch() -> None:
-    session = hopper(orifice=1.6)
+    session = hopper(orifice=2.2)
     settle(session)
     frame = session.frame()
     assert frame.grains > 40
@@ -56,6 +56,22 @@ def test_a_narrow_orifice_clogs_with_an_arch() -> None:
     assert not [check for check in session.checks() if check.holds is False]
     # A relaxed pile stays as it is.
     assert not session.advance(1_000)
+
+
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_never_started_is_not_clogged(seed: int) -> None:
+    """Where no grain has ever left, nothing has flowed that could clog; once one has, a rest under an arch is a clog."""
+    kinds = set()
+    for orifice in (0.6, 1.6):
+        session = hopper(orifice=orifice, seed=seed)
+        settle(session)
+        (notice,) = session.frame().notices
+        events = {event.kind for event in session.history.events}
+        started = session.run.course.out > 0
+        assert notice.startswith("clogged" if started else "never started")
+        assert events == {"clog" if started else "arch"}
+        kinds.add(started)
+    assert False in kinds
 
 
 def test_shaking_breaks_an_arch() -> None:

@@ -117,8 +117,8 @@ def test_a_locked_hand_is_announced_with_what_holds_and_can_be_drawn_back() -> N
     event = frame.events[-1]
     assert event.kind == "locked"
     assert event.text == frame.notices[0]
-    assert "locked at 6 k R: an arch of" in event.text
-    assert 0.9 * 6.0 < event.force <= 6.0 * 1.02
+    assert "locked at 8 k R: an arch of" in event.text
+    assert 0.9 * 8.0 < event.force <= 8.0 * 1.02
     assert frame.highlight is not None
     assert f"{int(frame.highlight.sum())} grains" in event.text
     handle = frame.handles[0]

@@ -83,6 +83,8 @@ def sent(desk: Desk) -> list[Command]:
 
 NU = "grains/regular_poisson_ratio"  # acts at once
 SHARE = "grains/auxetic_fraction"  # packs anew
+RATIO = "grains/stiffness_ratio"  # in place of Poisson's ratios
+SAID_TWICE = {NU, "grains/auxetic_poisson_ratio", "grains/contact_stiffness"}
 
 
 # -- keyboard --
@@ -131,6 +133,32 @@ def test_every_control_answers_the_keyboard(desk: Desk) -> None:
         else:
             continue
         desk.until(lambda before=before: effects(desk) != before, seconds=20)  # type: ignore[misc]
+        if name in SAID_TWICE:  # set back, or what says the same in other words would be refused
+            before = effects(desk)
+            desk.key(pygame.K_DELETE)
+            desk.until(lambda before=before: effects(desk) != before, seconds=20)  # type: ignore[misc]
+
+
+def test_what_says_the_same_twice_is_refused_in_one_line(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Poisson's ratio and λ: a line says why, and the panel shows what is set. Once the one is set back, the other is taken."""
+    said: list[str] = []
+    monkeypatch.setattr(desk.app.stage, "toast", said.append)
+    go_to(desk, NU)
+    desk.key(pygame.K_LEFT)
+    desk.until(lambda: len(sent(desk)) == 1)
+    go_to(desk, RATIO)
+    desk.key(pygame.K_RIGHT)
+    desk.until(lambda: any("not both" in line for line in said))
+    desk.until(lambda: value(desk, RATIO) == 0.0)
+    go_to(desk, NU)
+    desk.key(pygame.K_DELETE)
+    desk.until(lambda: sent(desk)[-1] == Change("regular_poisson_ratio", 0.8))
+    go_to(desk, RATIO)
+    desk.key(pygame.K_RIGHT)
+    desk.until(lambda: sent(desk)[-1] == Change("stiffness_ratio", 0.1))
+    assert len(sent(desk)) == 3
 
 
 def effects(desk: Desk) -> tuple[object, ...]:

@@ -24,7 +24,7 @@ SEEDS, QUICK_SEEDS = 20, 2
 MACHINE_SEEDS = 3  # of the scenes whose drive only says what force it needs
 RANDOM, QUICK_RANDOM = 1000, 40  # random hands in all
 # [k R], the strongest first: what it never asked for, a weaker hand does in just the same way.
-STRENGTHS = {"hopper": (8.0, 6.0, 4.0, 2.0), "intruder": (1.2, 0.9, 0.6, 0.3)}
+STRENGTHS = {"hopper": (12.0, 8.0, 6.0, 4.0), "intruder": (1.2, 0.9, 0.6, 0.3)}
 
 
 @dataclass(frozen=True)

@@ -282,7 +282,7 @@ CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
         ),
     },
     ("hopper", "machine"): {
-        "the machine gives more than the hand had": lambda p: bool(p[REGULAR].plotted.max() > 6.0),
+        "the machine gives more than the hand had": lambda p: bool(p[REGULAR].plotted.max() > 8.0),
     },
     ("gravity_hopper", "flow"): {
         "grains leave by themselves": lambda p: p[MIXED].frame.grains_out >= 3,

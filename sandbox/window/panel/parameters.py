@@ -26,6 +26,11 @@ GRAINS = (
     "auxetic_fraction",
     "friction",
     "contact_stiffness",
+    "stiffness_ratio",
+    "softness",
+    "size_ratio",
+    "small_fraction",
+    "size_width",
 )
 PATIENCE = 1.0  # with a change that the solver does not take: then the panel shows what is set [s]
 
