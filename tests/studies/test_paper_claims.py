@@ -38,7 +38,6 @@ from sandbox.studies.paper.conditions import (
     REGULAR,
     SETTING_UP,
     SYSTEMS,
-    hardest,
     lam_of,
     material,
     packing,
@@ -47,6 +46,7 @@ from sandbox.studies.paper.probes import PROBES
 from sandbox.studies.paper.runs import HAND, Request, Result
 from sandbox.studies.paper.study import CLAIMS
 from scenes import registry
+from scenes.grains import material as grains_of
 from scenes.scene import HAND_STRENGTH
 
 SEEDS = range(101, 107)
@@ -138,14 +138,16 @@ def test_the_seeds_that_judge_were_not_used_to_set_up() -> None:
             assert len(chance) >= SYSTEMS
 
 
-def test_materials_are_the_papers() -> None:
-    for lam in LAMBDAS:
-        settings = dict(material(lam))
-        request = Request("biaxial_periodic", packing(lam), FIRST, material(lam))
-        assert lam_of(request) == lam
-        assert settings["contact_stiffness"] == pytest.approx(
-            min(2.0 + (lam + 1.0) ** 2 / (0.1 * lam), hardest())
-        )
+@pytest.mark.parametrize("lam", LAMBDAS)
+def test_materials_are_the_papers(lam: float) -> None:
+    """ν = (λ − 1)/(λ + 1) and C = 2 + (λ + 1)²/(λμ) at μ = 0.1, in every scene whose grains have a λ here."""
+    request = Request("biaxial_periodic", packing(lam), FIRST, material(lam))
+    assert lam_of(request) == lam
+    for scene in ("biaxial_periodic", "biaxial_press", "couette", "avalanches"):
+        settings = registry.get(scene).settings(dict(material(lam)))
+        nu, stiffness = grains_of(settings, packing(lam))
+        assert nu == pytest.approx((lam - 1.0) / (lam + 1.0))
+        assert stiffness == pytest.approx(2.0 + (lam + 1.0) ** 2 / (0.1 * lam))
 
 
 # Verdicts.
@@ -272,7 +274,7 @@ def pushes(forces: dict[str, float], locked: dict[str, float]) -> list[Result]:
                 result(machine, stroke=stroke, force=rising + saw, grains_out=10.0 * stroke)
             )
             for strength in hopper.STRENGTHS:
-                stuck = (seed - 101) < 40 * locked[kind] * 8.0 / (strength + 2.0)
+                stuck = (seed - 101) < 40 * locked[kind]
                 hand = Request("hopper", kind, seed, ((HAND_STRENGTH, strength),), probe=HAND)
                 lists = {"locked": [float(stuck)], "out": [10.0 if stuck else 180.0]}
                 made.append(Result(hand, lists=lists))
@@ -285,7 +287,7 @@ def test_hopper_counts_what_locks() -> None:
         {"regular": 1.0, "auxetic": 0.0, "mixed": 0.1},
     )
     assert set(verdicts("hopper", runs).values()) == {HOLDS}
-    reading = hopper.locks("regular", 6.0)(runs)
+    reading = hopper.locks("regular", hopper.DEFAULT)(runs)
     assert reading.remark == "40 of 40 locked"
     assert reading.estimate.interval()[0] == pytest.approx(0.912, abs=1e-3)
 
@@ -296,7 +298,7 @@ def test_hopper_does_not_say_more_than_it_shows() -> None:
     found = verdicts("hopper", pushes(dict.fromkeys(hopper.KINDS, 2.0), same))
     assert found["the rings clog"] == OPEN
     assert found["metagrains flow"] == OPEN
-    assert found["rings clog more often than auxetic, hand of 6 k R"] == OPEN
+    assert found["rings clog more often than auxetic, hand of 8 k R"] == OPEN
     assert found["more force for rings than for auxetic"] == OPEN
     assert found["a large build up of force: much more than for mixed"] == FAILS
 
@@ -312,6 +314,17 @@ def test_hopper_leaves_out_runs_that_ended_early_unless_they_are_many() -> None:
         runs[k] = replace(runs[k], ended="the same")
     with pytest.raises(Unmeasurable, match="only 10 of 40 mixed runs"):
         hopper.force_over(hopper.peak, "regular", "auxetic")(runs)
+
+
+def test_a_run_that_ended_early_leaves_the_figure_whole() -> None:
+    runs = pushes({"regular": 5.0, "auxetic": 0.8, "mixed": 1.2}, dict.fromkeys(hopper.KINDS, 0.0))
+    k = next(k for k, r in enumerate(runs) if r.request.packing == "mixed")
+    short = {name: values[:40] for name, values in runs[k].columns.items()}
+    runs[k] = replace(runs[k], columns=short, ended="a grain was squeezed flat")
+    one, mean, locked = hopper.hopper_panels(runs)
+    assert [len(line.x) for line in one.lines] == [101, 101, 40]
+    assert [len(line.x) for line in mean.lines] == [101, 101, 101]
+    assert all(len(line.x) == len(line.y) for p in (one, mean, locked) for line in p.lines)
 
 
 def test_hopper_avalanches_and_no_friction() -> None:

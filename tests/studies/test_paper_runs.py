@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,7 @@ from sandbox.studies.paper.runs import (
     Result,
     Store,
     execute,
+    implied,
     run_all,
 )
 from scenes.scene import HAND_STRENGTH
@@ -279,6 +281,28 @@ def test_without_matplotlib_nothing_is_begun(
 
 def command(folder: Path, *words: str) -> list[str]:
     return [sys.executable, "-m", "sandbox", "study", "paper", "--out", str(folder), *words]
+
+
+def test_a_weaker_hand_that_was_never_needed_is_not_tried_again(tmp_path: Path) -> None:
+    hands = [
+        Request("grain_row", "auxetic", 1, ((HAND_STRENGTH, strength),), probe=HAND)
+        for strength in (50.0, 20.0, 0.1)
+    ]
+    strong, weak, too_weak = (execute(hand) for hand in hands)
+    assert implied(hands[1], [strong]) == replace(weak, seconds=0.0)
+    assert implied(hands[2], [strong, weak]) is None
+    assert implied(hands[0], [weak]) is None
+    assert implied(tiny("auxetic"), [strong]) is None
+    told: dict[Request, Result] = {strong.request: strong}
+
+    def done(result: Result) -> None:
+        told[result.request] = result
+
+    store = Store(tmp_path)
+    run_all(hands[1:], store, 1, done, known=told.values())
+    assert told[hands[1]].seconds == 0.0
+    assert store.read(hands[1]) == told[hands[1]]
+    assert told[hands[2]].lists == too_weak.lists
 
 
 @pytest.mark.end_to_end

@@ -222,7 +222,7 @@ def _judge_bed(rows: Sequence[Row]) -> list[Check]:
             "15 to 21",
             Demand(12.0, 24.0),
             "beds of 4000 discs, 35 diameters deep, begin at 21° and stop at 15° (Deboeuf et al.); without inertia there is one "
-            "angle in between; three degrees for the turning by whole ones and for a bed of a quarter of the size",
+            "angle in between; three degrees for the turning by whole ones and for a bed that is less than half as deep",
             judging,
         ),
         Check(

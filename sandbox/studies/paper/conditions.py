@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
-from core.material import from_paper
 from sandbox.studies.paper.claims import Unmeasurable, number
 from sandbox.studies.paper.runs import Request, Result
-from scenes import registry
 from scenes.parameter import Value
 
 SETTING_UP = range(1, 11)  # seeds that thresholds, strains and pressures were chosen on
@@ -35,28 +32,12 @@ def packing(lam: float) -> str:
 
 def material(lam: float) -> tuple[tuple[str, Value], ...]:
     """Settings of a scene for the paper's λ at its μ."""
-    nu, stiffness = map(float, from_paper(lam, MU))
-    return (
-        (f"{packing(lam)}_poisson_ratio", nu),
-        ("contact_stiffness", min(stiffness, hardest())),
-    )
-
-
-def hardest() -> float:
-    """The largest contact stiffness that scenes go up to [k]; λ = 0.01 and 100 at μ = 0.1 ask for 1022."""
-    scene = registry.get("couette")
-    return float(next(p.high for p in scene.parameters if p.name == "contact_stiffness"))
-
-
-def poisson_ratio(request: Request) -> float:
-    """Of all grains in the packing."""
-    return float(request.of(f"{request.packing}_poisson_ratio"))
+    return (("stiffness_ratio", lam), ("softness", MU))
 
 
 def lam_of(request: Request) -> float:
-    """The λ of ``LAMBDAS`` that a run's grains have."""
-    nu = poisson_ratio(request)
-    return min(LAMBDAS, key=lambda lam: abs(math.log(lam * (1.0 - nu) / (1.0 + nu))))
+    """The λ of a run's grains."""
+    return float(request.of("stiffness_ratio"))
 
 
 def of_lam(results: Sequence[Result], lam: float) -> list[Result]:

@@ -209,7 +209,7 @@ def overlap_factor(results: Sequence[Result]) -> Reading:
 
 def overlap_late(results: Sequence[Result]) -> Reading:
     """By how much contact starts late, at most [diameters]; negative where it is always early."""
-    late = max(-float(np.min(_early(result))) for result in results)
+    late = max(-float(np.min(_early(result))) for result in results) + 0.0  # no −0
     return exactly(late, Measured.of("late by, at most", "diameters", late))
 
 

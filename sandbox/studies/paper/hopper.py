@@ -12,6 +12,7 @@ import numpy as np
 
 from core.observables import force_drops
 from sandbox.studies.common.statistics import Apart, Demand, Share
+from sandbox.studies.hand import study as hand
 from sandbox.studies.paper.claims import (
     LESS,
     MORE,
@@ -40,8 +41,8 @@ from scenes.scene import BY_MACHINE, HAND_STRENGTH
 
 KINDS = ("regular", "auxetic", "mixed")
 SEEDS, SMOOTH_SEEDS = 40, 8
-STRENGTHS = (8.0, 6.0, 4.0, 2.0)  # [k R]
-DEFAULT = 6.0  # [k R] the scene's own
+STRENGTHS = hand.STRENGTHS["hopper"]  # [k R]
+DEFAULT = 8.0  # [k R] the scene's own, one of them
 LAST = 0.25  # share of the stroke that is its end
 SMALL_DROP = 1e-2  # [k R] a fall of the force below that is the tolerance's
 PAPER = (("grains", 300), ("friction", 0.5), ("orifice", 3.0), ("angle", 45.0))
@@ -257,7 +258,8 @@ def hopper_panels(results: Sequence[Result]) -> list[Panel]:
         runs = [r for r in runs if r.ended is None] or runs
         length = min(len(r.column("force")) for r in runs)
         forces = np.array([r.column("force")[:length] for r in runs])
-        mean.append(Line(kind, kind, first.column("stroke")[:length], forces.mean(axis=0)))
+        stroke_then = runs[0].column("stroke")[:length]
+        mean.append(Line(kind, kind, stroke_then, forces.mean(axis=0)))
         pushed = [r for r in of_kind(results, kind) if r.request.probe == HAND]
         strengths = sorted({float(r.request.of(HAND_STRENGTH)) for r in pushed})
         shares = np.array([_share(results, kind, s).value for s in strengths])

@@ -95,6 +95,8 @@ def _with(name: str, value: float) -> Chosen:
 
     def chosen(results: Sequence[Result]) -> list[Result]:
         first = results[0].request
+        if first.of(name) == value:
+            raise Unmeasurable("that is what judges here")
         kept = {n: first.of(n) for n in ("grains", "step", "pressure") if n != name}
         found = where(results, **kept, **{name: value})
         if not found:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 
@@ -187,20 +188,31 @@ def run_all(
     jobs: int,
     done: Callable[[Result], None],
     compiling: Callable[[], None] = lambda: None,
+    known: Collection[Result] = (),
 ) -> None:
     """Carry out what ``store`` does not hold yet, ``jobs`` at a time; ``done`` is told each, failed ones too.
 
-    Kernels are compiled once before the rest begins; ``compiling`` is told. Raises KeyboardInterrupt after all
-    processes have ended.
+    What follows from ``known`` results, which may grow meanwhile, is not carried out again. Kernels are compiled once before the
+    rest begins; ``compiling`` is told. Raises KeyboardInterrupt after all processes have ended.
     """
     if not requests:
         return
+
+    def not_known() -> Iterator[Request]:
+        for request in requests:
+            found = implied(request, known)
+            if found is None:
+                yield request
+            else:
+                store.write(found)
+                done(found)
+
     with Pool(jobs) as pool:
         compiling()
         pool.call(
             _warm, _terms(requests)
         ).exception()  # what fails here fails again, and is told then
-        for request, future in pool.each(_execute, requests):
+        for request, future in pool.each(_execute, not_known()):
             error = future.exception()
             if error is None:
                 result = future.result()
@@ -212,6 +224,20 @@ def run_all(
                 result = Result(request, failure=f"{type(error).__name__}: {error}")
             store.write(result)
             done(result)
+
+
+def implied(request: Request, known: Iterable[Result]) -> Result | None:
+    """What a hand comes to if a stronger one never asked for more than it has: the same, to the last bit."""
+    if request.probe != HAND:
+        return None
+    strength = float(request.of(HAND_STRENGTH))
+    for result in known:
+        other = result.request
+        if other.probe == HAND and replace(other, settings=request.settings) == request:
+            enough = result.lists.get("peak_force", [math.inf])[0] <= strength
+            if enough and strength < float(other.of(HAND_STRENGTH)):
+                return replace(result, request=request, seconds=0.0)
+    return None
 
 
 def _execute(request: Request) -> Result:

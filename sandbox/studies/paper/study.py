@@ -87,7 +87,6 @@ def study(
         return Outcome((), len(results), _failures(results), interrupted=True)
     judged = judge(chosen, plans, results)
     seconds = time.perf_counter() - began
-    _draw(chosen, plans, results, folder)
     about = {"quick": quick, "seconds": round(seconds, 1), "runs_from_before": found, **machine()}
     used: dict[Request, list[str]] = {}
     for claim in chosen:
@@ -97,6 +96,7 @@ def study(
     write_text(folder / "runs.csv", as_table(rows, used))
     write_text(folder / "results.json", as_json(judged, rows, about))
     write_text(folder / "claims.md", as_markdown(judged, rows, about, estimate(rows)))
+    _draw(chosen, plans, results, folder)
     return Outcome(judged, len(results), _failures(results), interrupted=False)
 
 
@@ -138,7 +138,10 @@ def _run(
                     file=sys.stderr,
                 )
 
-        run_all(missing, store, jobs, done, lambda: bar.set_description_str("compiling".ljust(32)))
+        def compiling() -> None:
+            bar.set_description_str("compiling".ljust(32))
+
+        run_all(missing, store, jobs, done, compiling, results.values())
 
 
 def _draw(
