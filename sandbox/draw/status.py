@@ -171,6 +171,9 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
     if beyond:
         squeezed = words.SQUEEZED
         items.append(_Item(squeezed.format(count=beyond), 6, squeezed.format(count="00")))
+    cone = max(frame.beyond_cone for frame in frames)
+    if cone > 0.0:
+        items.append(_Item(words.BEYOND_CONE.format(share=percent(cone)), 6))
     if any(frame.protocol for frame in frames):
         items.append(_Item(words.DRIVE, 2))
     if paused:

@@ -117,6 +117,7 @@ class Course:
             resisting=float(resisting),
             force_error=accuracy.force_error(report.residual, report.mean_contact_force),
             hand_strength=min(setup.solver.hand_strength, STRONGEST),
+            beyond_cone=increment.beyond_cone,
         )
 
     def tell_what_stopped(self, setup: Setup, increment: Increment) -> None:

@@ -28,6 +28,7 @@ class Row:
     )
     force_error: float = math.nan  # estimate for the force on the handle [k R], see ``Accuracy``
     hand_strength: float = 0.0  # the most that the hand could give [k R], as it is set
+    beyond_cone: float = 0.0  # share of contacts that pull harder than friction allows
 
     @property
     def magnitude(self) -> float:
@@ -62,6 +63,7 @@ _HEADER = (
     "force against the drive [k R]",
     "estimated error of the force on the handle [k R]",
     "hand strength [k R] (1000: a testing machine)",
+    "share of contacts beyond the friction cone",
 )
 
 

@@ -69,6 +69,7 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         highlight=None if highlight is None else highlight.copy(),
         residual_force=run.last.unbalanced.copy(),
         force_error=_force_error(run.history),
+        beyond_cone=run.last.beyond_cone,
         settings=dict(run.settings),
         first_kept=run.checkpoints.first,
         last_kept=run.checkpoints.last,

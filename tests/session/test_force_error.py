@@ -43,8 +43,8 @@ def test_rows_frames_and_tables_carry_the_estimate() -> None:
     frame = session.frame()
     mean = float(np.mean([abs(session.history[k].fy) for k in range(len(session.history))]))
     assert frame.force_error == pytest.approx(newest.force_error / mean)
-    assert session.history.header()[-2] == "estimated error of the force on the handle [k R]"
-    assert list(session.history.rows())[-1][-2] == newest.force_error
+    assert session.history.header()[-3] == "estimated error of the force on the handle [k R]"
+    assert list(session.history.rows())[-1][-3] == newest.force_error
 
 
 def test_estimate_is_above_most_errors() -> None:
