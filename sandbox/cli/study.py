@@ -46,7 +46,13 @@ def accuracy(options: argparse.Namespace) -> int:
     require_scipy()
     folder = prepare_folder(options.out)
     with stop_like_ctrl_c():
-        outcome = study.study(folder, scenes=options.scene, quick=options.quick, jobs=options.jobs)
+        outcome = study.study(
+            folder,
+            scenes=options.scene,
+            quick=options.quick,
+            jobs=options.jobs,
+            only_estimate=options.estimate,
+        )
     if outcome.interrupted:
         return stopped(outcome.jobs)
     for name, words in (*outcome.statements.items(), *outcome.failures.items()):
@@ -117,4 +123,4 @@ STUDIES: dict[str, Study] = {
     "stability": stability,
     "hand": hand,
 }
-OWN_OPTIONS = {"only": "paper", "scene": "accuracy"}
+OWN_OPTIONS = {"only": "paper", "scene": "accuracy", "estimate": "accuracy"}

@@ -10,6 +10,7 @@ from statistics import mean, median
 from typing import Any
 
 from sandbox.studies.common.folder import finite
+from sandbox.studies.common.intervals import wilson
 from sandbox.studies.hand.jobs import Row
 from sandbox.studies.hand.tour_claims import BROKEN, TENDENCIES
 from scenes.scene import STRONGEST
@@ -103,14 +104,6 @@ def as_markdown(rows: Sequence[Row], failures: Sequence[str], about: Mapping[str
     if failures:
         lines += ["## Runs that failed", "", *(f"- {failure}" for failure in failures), ""]
     return "\n".join(lines)
-
-
-def wilson(hits: int, count: int) -> tuple[float, float]:
-    """Interval of a share at 95 % (Wilson 1927, doi:10.1080/01621459.1927.10502953)."""
-    from scipy.stats import binomtest
-
-    interval = binomtest(hits, count).proportion_ci(0.95, method="wilson")
-    return float(interval.low), float(interval.high)
 
 
 def _share(hits: int, count: int) -> str:
