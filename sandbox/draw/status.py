@@ -144,8 +144,8 @@ def draw_status(
     draw_lamp(painter, x, middle, state.colour)
     x += lamp_space(painter)
     free = rect.right - pad - x - rate_width
-    whole = type_.width(said, BODY) <= free
-    painter.text(said if whole else type_.shortened(state.state, BODY, free), x, middle)
+    fitting = [text for text in (said, state.short) if type_.width(text, BODY) <= free]
+    painter.text(fitting[0] if fitting else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
         painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
 

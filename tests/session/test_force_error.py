@@ -78,7 +78,7 @@ def test_lamp_says_the_estimate_and_turns_amber_where_it_is_rough() -> None:
     assert fine.error == "force usually within 0.7 %, nine of ten within 3 %"
     assert fine.short.endswith("within 3 %")
     assert fine.colour == DARK.good
-    rough = lamp(replace(frame, busy=False, force_error=1.5 * ROUGH), DARK)
+    rough = lamp(replace(frame, busy=False, usual_error=0.1, force_error=1.5 * ROUGH), DARK)
     assert rough.colour == DARK.working
     for unknown in (math.nan, 3.0):
         assert lamp(replace(frame, busy=False, force_error=unknown), DARK).error.startswith(
