@@ -22,16 +22,15 @@ class Bound:
     power: float  # of what is left
     moved_power: float
 
-    def error(self, contact_force: float, unbalanced: float, moved: float) -> float:
-        """factor × mean contact force f × (u/f)^p × m^q [k R].
+    def error(self, contact_force: float, left: float, moved: float) -> float:
+        """factor × mean contact force f × (u/f)^p × m^q [k R], u as ``left_over``.
 
-        u [k R]: root of the sum of squares of the forces that are left on the grains; m: how far one has moved at most in the
-        increment, over the step, 1 or more.
+        m: how far a grain has moved at most in the increment, over the step, 1 or more.
         """
         if contact_force <= 0.0:
             return 0.0
-        left = (unbalanced / contact_force) ** self.power
-        return float(self.factor * contact_force * left * moved**self.moved_power)
+        share = (left / contact_force) ** self.power
+        return float(self.factor * contact_force * share * moved**self.moved_power)
 
 
 @dataclass(frozen=True)
@@ -41,11 +40,19 @@ class Estimate:
     usual: Bound
     nine_of_ten: Bound
 
-    def errors(self, contact_force: float, unbalanced: float, moved: float) -> tuple[float, float]:
+    def errors(self, contact_force: float, left: float, moved: float) -> tuple[float, float]:
         """(usual, nine of ten) [k R], as ``Bound.error``, in order: the second is never less than the first."""
-        state = contact_force, unbalanced, moved
+        state = contact_force, left, moved
         usual = self.usual.error(*state)
         return usual, max(usual, self.nine_of_ten.error(*state))
+
+
+def left_over(unbalanced: float, residual: float, contact_force: float) -> float:
+    """u [k R]: root of the sum of squares of the forces that are left on the grains, ``unbalanced``.
+
+    It is the largest generalised force at least, ``residual`` times the mean contact force: one may be left on a shape alone.
+    """
+    return max(unbalanced, residual * contact_force)
 
 
 # For what the study has not seen, scenes, packings, and what a person has made: about that of the worst it has.

@@ -12,7 +12,7 @@ from core.quasistatic import Increment
 from core.relaxation import FAILED, StopReason
 from core.rigid import Point
 from sandbox.session.history import Row
-from scenes.accuracy import Estimate
+from scenes.accuracy import Estimate, left_over
 from scenes.scene import STRONGEST, Remarks, Setup
 from scenes.text import Text
 
@@ -106,9 +106,14 @@ class Course:
             force = curve.force
             resisting = self.out if force is None else force(setup.packing, increment)
         report = increment.report
-        left = math.nan if report.reason in FAILED else float(np.linalg.norm(increment.unbalanced))
-        moved = max(farthest / setup.solver.step, 1.0)
-        usual, most = estimate.errors(report.mean_contact_force, left, moved)
+        usual = most = math.nan
+        if report.reason not in FAILED:
+            force, unbalanced = (
+                report.mean_contact_force,
+                float(np.linalg.norm(increment.unbalanced)),
+            )
+            left = left_over(unbalanced, report.residual, force)
+            usual, most = estimate.errors(force, left, max(farthest / setup.solver.step, 1.0))
         return Row(
             increment=number,
             stroke=self.stroke,

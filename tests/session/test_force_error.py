@@ -20,7 +20,7 @@ from sandbox.studies.accuracy.estimate import MOVED_POWER, POWER
 from sandbox.studies.accuracy.protocols import PROTOCOLS
 from sandbox.words import words
 from scenes import registry
-from scenes.accuracy import TABLE, UNKNOWN, Bound, Estimate, accuracies, accuracy_of
+from scenes.accuracy import TABLE, UNKNOWN, Bound, Estimate, accuracies, accuracy_of, left_over
 from tests.draw.frames import intruder_frame
 
 
@@ -119,9 +119,11 @@ def test_an_edited_scene_is_one_that_nobody_has_measured() -> None:
     while not session.idle or not session.run.course.edited:
         session.advance()
     run = session.run
-    left = float(np.linalg.norm(run.last.unbalanced))
+    report = run.last.report
+    unbalanced = float(np.linalg.norm(run.last.unbalanced))
+    left = left_over(unbalanced, report.residual, report.mean_contact_force)
     moved = max(run.engine.farthest_move() / run.setup.solver.step, 1.0)
-    errors = UNKNOWN.errors(run.last.report.mean_contact_force, left, moved)
+    errors = UNKNOWN.errors(report.mean_contact_force, left, moved)
     newest = session.history[-1]
     assert (newest.usual_error, newest.force_error) == pytest.approx(errors)
     assert newest.force_error > 0.0
@@ -134,6 +136,16 @@ def test_nine_of_ten_is_never_less_than_usual_and_both_grow_with_what_is_left() 
     assert most == usual > Bound(3.0, 1.0, 0.0).error(2.0, 0.02, 4.0)
     assert estimate.errors(2.0, 20.0, 4.0) == pytest.approx((2.0 * 2.0 * 10**0.5 * 2.0, 60.0))
     assert estimate.errors(0.0, 0.0, 1.0) == (0.0, 0.0)
+
+
+def test_what_is_left_on_a_shape_alone_counts() -> None:
+    session = Session("single_grain", "regular", 1)
+    session.build()
+    session.submit(Protocol(True))
+    while len(session.history) <= 5:
+        session.advance()
+    assert np.linalg.norm(session.run.last.unbalanced) < 1e-12
+    assert session.history[-1].force_error > session.history[-1].usual_error > 0.0
 
 
 def test_an_increment_that_is_taken_back_has_no_estimate() -> None:

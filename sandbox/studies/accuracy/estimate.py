@@ -19,7 +19,7 @@ import numpy as np
 from core.arrays import Floats
 from sandbox.studies.accuracy.live import FIT, JUDGE
 from sandbox.studies.common.intervals import wilson
-from scenes.accuracy import Bound
+from scenes.accuracy import Bound, left_over
 
 SHARES = {"usual": 0.5, "nine_of_ten": 0.9}
 AIMS = {"usual": (0.4, 0.6), "nine_of_ten": (0.85, 0.95)}
@@ -39,7 +39,7 @@ class Cases:
     seed: Floats
     level: Floats
     contact_force: Floats  # mean [k R]
-    unbalanced: Floats  # [k R]
+    left: Floats  # [k R]
     moved: Floats  # over the step
     error: Floats  # [k R]
     mean: Floats  # magnitude of the force on the handle up to there [k R]
@@ -71,7 +71,7 @@ def cases(drives: Mapping[int, Mapping[str, Any]]) -> Cases:
             float(seed),
             reading["level"],
             reading["contact_force"],
-            reading["unbalanced"],
+            left_over(reading["unbalanced"], reading["residual"], reading["contact_force"]),
             row["moved"],
             reading["error"],
             row["mean"],
@@ -116,7 +116,7 @@ def bound(found: Cases, share: float) -> Bound:
 
 def _bound(found: Cases, share: float, form: bool) -> Bound:
     """In that form: with the farthest move, or without."""
-    left = np.log(found.unbalanced / found.contact_force)
+    left = np.log(found.left / found.contact_force)
     columns, limits = [left], [POWER]
     if form:
         columns, limits = [left, np.log(found.moved)], [POWER, MOVED_POWER]
@@ -130,7 +130,7 @@ def _bound(found: Cases, share: float, form: bool) -> Bound:
 
 def _relative(bound: Bound, found: Cases) -> Floats:
     """The bound over the mean contact force (n,)."""
-    states = zip(found.contact_force, found.unbalanced, found.moved, strict=True)
+    states = zip(found.contact_force, found.left, found.moved, strict=True)
     size = np.array([bound.error(*state) for state in states])
     relative: Floats = size / found.contact_force
     return relative

@@ -31,13 +31,13 @@ RUNS = (
 ESTIMATE = """Scripted drives at the defaults, by a testing machine. Some increments, spread over the whole drive, are \
 solved again from the same place to a thousandth of the tolerance; the difference of the force on the handle is its error, \
 relative to the mean force of the drive up to there. Each bound is factor × f × (u/f)^p × m^q, with f the mean contact force, \
-u the root of the sum of squares of the forces that are left on the grains, and m the farthest move of a grain over the step. It \
-is fitted to the increments of seeds {fit} and judged by those of seeds {judge}, where the handle feels a force. “Usually” is \
-meant to hold one time in two, “nine of ten” nine times in ten, with Wilson intervals of 95 % as if increments were independent; \
-a star marks a share outside of 0.4 to 0.6, or of 0.85 to 0.95. The last two columns are the coverage of “nine of ten” on the \
-way to the solution, at ten times the tolerance and at a tenth of it. {untold} of {all} increments were not solved to a tenth of \
-the tolerance, and are left out. A row a drive: estimate.csv. It is the error of the relaxation alone: what the length of the \
-increments does, and what increments before have left, comes on top."""
+u the root of the sum of squares of the forces that are left on the grains (the residual times f at least), and m the farthest \
+move of a grain over the step. It is fitted to the increments of seeds {fit} and judged by those of seeds {judge}, where the \
+handle feels a force. “Usually” is meant to hold one time in two, “nine of ten” nine times in ten, with Wilson intervals of 95 % \
+as if increments were independent; a star marks a share outside of 0.4 to 0.6, or of 0.85 to 0.95. The last two columns are the \
+coverage of “nine of ten” on the way to the solution, at ten times the tolerance and at a tenth of it. {untold} of {all} \
+increments were not solved to a tenth of the tolerance, and are left out. A row a drive: estimate.csv. It is the error of the \
+relaxation alone: what the length of the increments does, and what increments before have left, comes on top."""
 
 
 def percent(value: float | None) -> str:
