@@ -46,6 +46,7 @@ class Increment:
     body_contacts: observables.RigidContacts
     unbalanced: Floats  # (N,) size of the force that is left on each grain [k R]; 0 if it failed
     friction: FrictionForces | None = None
+    beyond_cone: float = 0.0  # share of frictional contacts, see ``FrictionForces.beyond_cone``
 
 
 class Quasistatic:
@@ -512,6 +513,9 @@ class Quasistatic:
     ) -> Increment:
         pairs, bodies = contacts
         self.reactions = self._measure(bodies, friction)
+        beyond = 0.0
+        if friction is not None and self.friction is not None:
+            beyond = friction.beyond_cone(self.friction.coefficient, pairs, bodies)
         self.latest = Increment(
             moved=self._moved,
             pulled=self._pulled,
@@ -524,6 +528,7 @@ class Quasistatic:
             body_contacts=bodies,
             unbalanced=unbalanced,
             friction=friction,
+            beyond_cone=beyond,
         )
         return self.latest
 

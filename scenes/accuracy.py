@@ -6,7 +6,8 @@ accuracy.toml beside this file is the accuracy.toml of assets/studies/accuracy, 
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
@@ -14,23 +15,63 @@ TABLE = Path(__file__).with_name("accuracy.toml")
 
 
 @dataclass(frozen=True)
-class Accuracy:
-    """``statement`` is what ``list`` prints; the others calibrate ``force_error``."""
+class Bound:
+    """An error of the force on the handle that some share of all increments stays within."""
 
-    statement: str
-    error_factor: float
-    error_power: float
+    factor: float
+    power: float  # of what is left
+    moved_power: float
 
-    def force_error(self, residual: float, contact_force: float) -> float:
-        """Estimated error of the force on the handle [k R] that an unfinished relaxation leaves.
+    def error(self, contact_force: float, left: float, moved: float) -> float:
+        """factor × mean contact force f × (u/f)^p × m^q [k R], u as ``left_over``.
 
-        A × mean contact force × residual^p: in 90 % of the increments of the study the error was below that, at any tolerance.
+        m: how far a grain has moved at most in the increment, over the step, 1 or more.
         """
-        return self.error_factor * contact_force * float(residual**self.error_power)
+        if contact_force <= 0.0:
+            return 0.0
+        share = (left / contact_force) ** self.power
+        return float(self.factor * contact_force * share * moved**self.moved_power)
 
 
-# For scenes that the study has not seen: about that of the worst it has.
-UNKNOWN = Accuracy("", 50.0, 1.0)
+@dataclass(frozen=True)
+class Estimate:
+    """What the error of the force on the handle usually stays within, one time in two, and what nine times of ten."""
+
+    usual: Bound
+    nine_of_ten: Bound
+
+    def errors(self, contact_force: float, left: float, moved: float) -> tuple[float, float]:
+        """(usual, nine of ten) [k R], as ``Bound.error``, in order: the second is never less than the first."""
+        state = contact_force, left, moved
+        usual = self.usual.error(*state)
+        return usual, max(usual, self.nine_of_ten.error(*state))
+
+
+def left_over(unbalanced: float, residual: float, contact_force: float) -> float:
+    """u [k R]: root of the sum of squares of the forces that are left on the grains, ``unbalanced``.
+
+    It is the largest generalised force at least, ``residual`` times the mean contact force: one may be left on a shape alone.
+    """
+    return max(unbalanced, residual * contact_force)
+
+
+# For what the study has not seen, scenes, packings, and what a person has made: about that of the worst it has.
+UNKNOWN = Estimate(Bound(10.0, 1.0, 0.0), Bound(100.0, 1.0, 0.0))
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """``statement`` is what ``list`` prints; ``estimates`` are those of the packings that the study has seen, by name."""
+
+    statement: str = ""
+    estimates: Mapping[str, Estimate] = field(default_factory=dict)
+
+    def estimate(self, packing: str) -> Estimate:
+        """That of the packing of that name."""
+        return self.estimates.get(packing, UNKNOWN)
+
+
+NOTHING = Accuracy()
 
 
 @cache
@@ -38,11 +79,18 @@ def accuracies() -> dict[str, Accuracy]:
     """All scenes that the study has seen, by name."""
     table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
     return {
-        name: Accuracy(str(row["statement"]), float(row["error_factor"]), float(row["error_power"]))
+        name: Accuracy(
+            str(row["statement"]),
+            {kind: _estimate(found) for kind, found in row.items() if kind != "statement"},
+        )
         for name, row in table.items()
     }
 
 
+def _estimate(found: Mapping[str, tuple[float, float, float]]) -> Estimate:
+    return Estimate(Bound(*found["usual"]), Bound(*found["nine_of_ten"]))
+
+
 def accuracy_of(scene: str) -> Accuracy:
     """What is known about the scene of that name."""
-    return accuracies().get(scene, UNKNOWN)
+    return accuracies().get(scene, NOTHING)

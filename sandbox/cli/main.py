@@ -197,6 +197,11 @@ def _add_study(command: Command) -> None:
         "--scene", nargs="+", metavar="NAME", help="these scenes instead of all (accuracy)"
     )
     study.add_argument(
+        "--estimate",
+        action="store_true",
+        help="nothing but the live estimate of the force's error (accuracy)",
+    )
+    study.add_argument(
         "--jobs",
         type=argument(arguments.whole_number(1, 64)),
         default=2,

@@ -47,7 +47,13 @@ def accuracy(options: argparse.Namespace) -> int:
     require_scipy()
     folder = prepare_folder(options.out)
     with stop_like_ctrl_c():
-        outcome = study.study(folder, scenes=options.scene, quick=options.quick, jobs=options.jobs)
+        outcome = study.study(
+            folder,
+            scenes=options.scene,
+            quick=options.quick,
+            jobs=options.jobs,
+            only_estimate=options.estimate,
+        )
     if outcome.interrupted:
         return stopped(outcome.jobs)
     for name, words in (*outcome.statements.items(), *outcome.failures.items()):
@@ -144,4 +150,4 @@ STUDIES: dict[str, Study] = {
     "hand": hand,
     "classics": classics,
 }
-OWN_OPTIONS = {"only": ("paper", "classics"), "scene": ("accuracy",)}
+OWN_OPTIONS = {"only": ("paper", "classics"), "scene": ("accuracy",), "estimate": ("accuracy",)}

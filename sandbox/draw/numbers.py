@@ -11,6 +11,7 @@ from sandbox.words.language import decimal_sign
 
 MINUS = "−"
 ONE_TWO_FIVE = (1.0, 2.0, 5.0, 10.0)
+ONE_DIGIT = (1.0, 2.0, 3.0, 5.0, 7.0, 10.0)
 FINER = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
@@ -52,9 +53,9 @@ def number(value: float, decimals: int) -> str:
     return text.replace("-", MINUS).replace(".", decimal_sign())
 
 
-def percent(share: float) -> str:
+def percent(share: float, steps: tuple[float, ...] = ONE_TWO_FIVE) -> str:
     """An upper bound in words: 0.008 -> '1 %', 0.0004 -> '0.05 %'."""
-    bound = 100.0 * nice_ceiling(share)
+    bound = 100.0 * nice_ceiling(share, steps)
     return f"{number(bound, decimals_for(bound))} %"
 
 

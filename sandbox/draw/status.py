@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
-from sandbox.draw.numbers import percent
+from sandbox.draw.numbers import ONE_DIGIT, percent
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY
 from sandbox.draw.theme import Theme, mix
 from sandbox.session.frame import CONVERGED, Frame
 from sandbox.words import words
 
-ROUGH = 0.5  # an estimated error of the force on the handle above which settled is not yet green
+ROUGH = 0.5  # an error of the force on the handle that one in ten exceeds, above which settled is not yet green
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +50,9 @@ def lamp(frame: Frame, theme: Theme) -> Lamp:
     elif frame.residual > 1.0:
         error = words.UNKNOWN_FORCES
     elif estimated:
-        bound = percent(max(frame.force_error, 1e-6))
-        error = words.HANDLE_FORCE_ERROR.format(error=bound)
+        bound = percent(max(frame.force_error, 1e-6), ONE_DIGIT)
+        usual = percent(max(frame.usual_error, 1e-6), ONE_DIGIT)
+        error = words.HANDLE_FORCE_ERROR.format(usual=usual, error=bound)
         within = words.WITHIN.format(error=bound)
     else:
         bound = percent(max(frame.residual, 1e-6))
@@ -143,8 +144,8 @@ def draw_status(
     draw_lamp(painter, x, middle, state.colour)
     x += lamp_space(painter)
     free = rect.right - pad - x - rate_width
-    whole = type_.width(said, BODY) <= free
-    painter.text(said if whole else type_.shortened(state.state, BODY, free), x, middle)
+    fitting = [text for text in (said, state.short) if type_.width(text, BODY) <= free]
+    painter.text(fitting[0] if fitting else type_.shortened(state.state, BODY, free), x, middle)
     if rate_width:
         painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
 
@@ -171,6 +172,9 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
     if beyond:
         squeezed = words.SQUEEZED
         items.append(_Item(squeezed.format(count=beyond), 6, squeezed.format(count="00")))
+    cone = max(frame.beyond_cone for frame in frames)
+    if cone > 0.0:
+        items.append(_Item(words.BEYOND_CONE.format(share=percent(cone)), 6))
     if any(frame.protocol for frame in frames):
         items.append(_Item(words.DRIVE, 2))
     if paused:

@@ -12,7 +12,7 @@ from core.quasistatic import Increment
 from core.relaxation import FAILED, StopReason
 from core.rigid import Point
 from sandbox.session.history import Row
-from scenes.accuracy import Accuracy
+from scenes.accuracy import Estimate, left_over
 from scenes.scene import STRONGEST, Remarks, Setup
 from scenes.text import Text
 
@@ -88,10 +88,12 @@ class Course:
         if pull != (0.0, 0.0):
             self.direction = pull
 
-    def read_off(self, setup: Setup, increment: Increment, number: int, accuracy: Accuracy) -> Row:
-        """The row of the history for an increment, the ``number``-th.
+    def read_off(
+        self, setup: Setup, increment: Increment, number: int, farthest: float, estimate: Estimate
+    ) -> Row:
+        """The row of the history for an increment, the ``number``-th, in which no grain has moved further than ``farthest`` [R].
 
-        ``accuracy`` is that of the scene; the error of the force on the handle is estimated by it.
+        ``estimate`` is that of the scene and its packing: how far off the force on the handle is.
         """
         fx = fy = 0.0
         drive = setup.handles[0].body
@@ -104,6 +106,14 @@ class Course:
             force = curve.force
             resisting = self.out if force is None else force(setup.packing, increment)
         report = increment.report
+        usual = most = math.nan
+        if report.reason not in FAILED:
+            force, unbalanced = (
+                report.mean_contact_force,
+                float(np.linalg.norm(increment.unbalanced)),
+            )
+            left = left_over(unbalanced, report.residual, force)
+            usual, most = estimate.errors(force, left, max(farthest / setup.solver.step, 1.0))
         return Row(
             increment=number,
             stroke=self.stroke,
@@ -115,8 +125,10 @@ class Course:
             iterations=report.iterations,
             stop_reason=str(report.reason),
             resisting=float(resisting),
-            force_error=accuracy.force_error(report.residual, report.mean_contact_force),
+            usual_error=usual,
+            force_error=most,
             hand_strength=min(setup.solver.hand_strength, STRONGEST),
+            beyond_cone=increment.beyond_cone,
         )
 
     def tell_what_stopped(self, setup: Setup, increment: Increment) -> None:

@@ -26,8 +26,12 @@ class Row:
     resisting: (
         float  # force against the drive [k R]; follows from fx, fy and the direction of motion
     )
-    force_error: float = math.nan  # estimate for the force on the handle [k R], see ``Accuracy``
+    # How far off the force on the handle is, estimated [k R]: usually no further than the first, nine times of ten the second.
+    # See ``scenes.accuracy``.
+    usual_error: float = math.nan
+    force_error: float = math.nan
     hand_strength: float = 0.0  # the most that the hand could give [k R], as it is set
+    beyond_cone: float = 0.0  # share of contacts that pull harder than friction allows
 
     @property
     def magnitude(self) -> float:
@@ -60,8 +64,10 @@ _HEADER = (
     "FIRE iterations",
     "stop reason",
     "force against the drive [k R]",
-    "estimated error of the force on the handle [k R]",
+    "usual error of the force on the handle, estimated [k R]",
+    "error of the force on the handle that nine of ten stay within, estimated [k R]",
     "hand strength [k R] (1000: a testing machine)",
+    "share of contacts beyond the friction cone",
 )
 
 

@@ -18,6 +18,7 @@ from sandbox.session.course import Course
 from sandbox.session.editing import edited
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
+from scenes.accuracy import UNKNOWN
 from scenes.scene import Check, Earlier, Holding, Latest, Remarks, Scene, Setup, Track, Values
 from scenes.text import Text, message
 
@@ -178,8 +179,10 @@ class Run:
         return True
 
     def _add_row(self, increment: Increment) -> None:
-        number, known = len(self.history), self.scene.accuracy
-        self.history.append(self.course.read_off(self.setup, increment, number, known))
+        # Nobody has measured what a person has made.
+        known = UNKNOWN if self.course.edited else self.scene.accuracy.estimate(self.packing_kind)
+        number, farthest = len(self.history), self.engine.farthest_move()
+        self.history.append(self.course.read_off(self.setup, increment, number, farthest, known))
 
     @property
     def _still(self) -> bool:

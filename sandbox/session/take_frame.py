@@ -26,6 +26,7 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
     highlight = run.course.remarks.highlight
     state = packing.state.copy()
     state[:2] = packing.folded()
+    usual, most = _errors(run.history)
     primitives, _ = run.setup.world.primitives()
     stress = grain_stress(packing, run.last.grain_contacts, run.last.body_contacts, primitives)
     return Frame(
@@ -68,7 +69,9 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
         residual_force=run.last.unbalanced.copy(),
-        force_error=_force_error(run.history),
+        usual_error=usual,
+        force_error=most,
+        beyond_cone=run.last.beyond_cone,
         settings=dict(run.settings),
         first_kept=run.checkpoints.first,
         last_kept=run.checkpoints.last,
@@ -89,10 +92,12 @@ def _force_label(run: Run) -> str:
     return Text("force on the {label} [k R]", label=run.setup.handles[0].label)
 
 
-def _force_error(history: History) -> float:
-    """The newest estimate over the mean magnitude of the force so far; nan where there was none."""
-    scale = history.mean_magnitude
-    return history[-1].force_error / scale if scale > 0.0 else math.nan
+def _errors(history: History) -> tuple[float, float]:
+    """The newest estimates over the mean magnitude of the force so far; nan where there was none."""
+    scale, row = history.mean_magnitude, history[-1]
+    if scale == 0.0:
+        return math.nan, math.nan
+    return row.usual_error / scale, row.force_error / scale
 
 
 def _ahead(run: Run) -> Ahead | None:

@@ -59,7 +59,7 @@ def assert_finite(frame: Frame) -> None:
             value = getattr(part, field.name)
             if field.name == "box" or value is None:
                 continue
-            if field.name == "force_error" and not np.any(frame.curve_force):
+            if field.name in ("usual_error", "force_error") and not np.any(frame.curve_force):
                 continue  # relative to a force that there has not been yet
             if isinstance(value, tuple):
                 pending += [v for v in value if hasattr(v, "__dataclass_fields__")]

@@ -1,17 +1,14 @@
-"""Fronts, extrapolation, bifurcations and the estimate: pure functions on numbers with known answers."""
+"""Fronts, extrapolation and bifurcations: pure functions on numbers with known answers."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 
 from sandbox.studies.accuracy.fronts import (
     cost_at,
-    coverage,
     extrapolate,
-    factor,
     first_beyond,
     front,
     lead,
@@ -74,17 +71,6 @@ def test_first_place_where_walks_part() -> None:
     assert first_beyond([1.0, 2.0], [0.0, 0.1], 0.2) is None
     assert first_beyond([1.0, 2.0], [0.0, math.nan], 0.2) == 2.0
     assert first_beyond([], [], 0.2) is None
-
-
-def test_factor_covers_the_share_that_it_is_asked_for() -> None:
-    rng = np.random.default_rng(1)
-    scale = rng.uniform(0.5, 2.0, 1000)
-    error = scale * rng.exponential(size=1000)
-    amount = factor(scale, error, 0.95)
-    assert coverage(scale, error, amount) == pytest.approx(0.95, abs=0.002)
-    assert amount == pytest.approx(3.0, abs=0.3)  # −ln 0.05
-    assert factor(np.zeros(2), np.zeros(2)) == 0.0
-    assert math.isnan(factor(np.zeros(0), np.zeros(0)))
 
 
 def test_means_and_slopes() -> None:

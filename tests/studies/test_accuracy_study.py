@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,12 @@ from sandbox.session.commands import Protocol as Drive
 from sandbox.session.session import Session
 from sandbox.studies.accuracy import study as accuracy
 from sandbox.studies.accuracy.job import Job, measure
+from sandbox.studies.accuracy.peers import df_sane
 from sandbox.studies.accuracy.protocols import PROTOCOLS, QUICK
 from sandbox.studies.accuracy.report import as_markdown, as_table, percent, statement
 from sandbox.studies.accuracy.summary import (
     along_path,
     bifurcation,
-    estimate,
     own_end,
     own_increments,
     stiffness,
@@ -110,13 +111,40 @@ def test_summary_and_report(row_job: dict[str, Any]) -> None:
     assert set(summary["lead"]) == {"SciPy L-BFGS-B", "paper's chart"}
     assert statement(summary).startswith("force within ")
     about = {"machine": machine()["machine"], "quick": True, "jobs": 1}
-    text = as_markdown({"grain_row": summary}, about, 0.01)
+    text = as_markdown({"grain_row": summary}, {}, about, 0.01)
     assert "| `grain_row` | 7 |" in text
     assert "Quick run." in text
-    table = tomllib.loads(as_table({"grain_row": summary}))["grain_row"]
+    assert "## Length of the increment" in text
+    assert "friction cone" not in text
+    table = tomllib.loads(as_table({"grain_row": statement(summary)}, {}))["grain_row"]
     assert table["statement"] == statement(summary)
-    assert table["error_factor"] > 0.0
-    assert 0.0 < table["error_power"] <= 1.0
+
+
+def test_with_friction_contacts_beyond_the_cone_are_reported_and_minimisers_are_left_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plan = replace(PROTOCOLS["grain_row"], length=2, settings=(("friction", 0.3),))
+    monkeypatch.setitem(PROTOCOLS, "grain_row", plan)
+    job = json.loads(json.dumps(measure(Job("grain_row", 1, quick=True))))
+    assert job["friction"] is job["memory"] is True
+    assert set(job["peers"]) == {"SciPy DF-SANE", "paper's chart"}
+    assert job["overlap"] is job["check"] is None
+    for walked in job["walks"]:
+        walked["beyond_cone"] = 0.25
+    summary = summarise([job])
+    about = {"machine": machine()["machine"], "quick": True, "jobs": 1}
+    text = as_markdown({"grain_row": summary}, {}, about, 0.01)
+    section = text.split("## Contacts beyond the friction cone")[1].split("##")[0]
+    assert "| `grain_row` | " + " | ".join(["25 %"] * len(QUICK.tolerances)) + " |" in section
+    assert "L-BFGS-B: mean" not in text.split("## The reference")[0].split("| scene |")[2]
+
+
+def test_root_finder_needs_no_energy() -> None:
+    start = begin("grain_row", "mixed", 1, {"friction": 0.3}, 4)
+    found = walk(start, Knobs(tolerance=1e-3, solve=df_sane), 1).looks[0]
+    usual = walk(start, Knobs(tolerance=1e-8), 1).looks[0]
+    assert found.residual <= 1e-3
+    assert found.force[1] == pytest.approx(usual.force[1], rel=1e-2)
 
 
 def test_a_tight_walk_that_leaves_the_reference_ends_the_errors(row_job: dict[str, Any]) -> None:
@@ -170,24 +198,6 @@ def test_model_error_is_against_the_extrapolated_limit() -> None:
     assert found["cost_power"] == pytest.approx(0.5)
 
 
-def test_estimate_is_tried_on_increments_that_it_has_not_seen() -> None:
-    rows = [[[0.1, 2.0, 0.2], [0.1, 2.0, 0.3], [0.01, 2.0, 0.02], [0.01, 2.0, 0.01]]]
-    found = estimate(rows)
-    assert found["power"] == 1.0
-    assert found["factor"] == pytest.approx(1.0)
-    assert found["coverage"] == 0.5
-    assert found["increments"] == 2
-
-
-def test_estimate_falls_as_slowly_as_errors_do() -> None:
-    residual = np.logspace(-1, -5, 9)
-    rows = [[r, 0.5, 0.5 * 0.3 * r**0.5] for r in residual]
-    found = estimate([rows])
-    assert found["power"] == pytest.approx(0.5)
-    assert found["factor"] == pytest.approx(0.3)
-    assert found["coverage"] == 1.0
-
-
 @pytest.mark.parametrize(
     ("value", "text"),
     [(0.0123, "1.2 %"), (2.0, "200 %"), (0.0, "0"), (math.nan, "—"), (1e-9, "1e-07 %")],
@@ -219,7 +229,7 @@ def test_what_was_finished_is_not_measured_again(tmp_path: Path) -> None:
     )
 
 
-def _never(job: Job) -> dict[str, Any]:
+def _never(job: accuracy.Task) -> dict[str, Any]:
     raise AssertionError(f"{job} was measured again")
 
 
@@ -234,6 +244,7 @@ def test_key_follows_what_a_job_depends_on() -> None:
         (["study", "accuracy", "--out", "x", "--scene", "intrudr"], "did you mean intruder?"),
         (["study", "accuracy", "--out", "x", "--only", "press"], "belongs to study paper"),
         (["study", "paper", "--out", "x", "--scene", "intruder"], "belongs to study accuracy"),
+        (["study", "hand", "--out", "x", "--estimate"], "belongs to study accuracy"),
     ],
 )
 def test_mistakes(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -211,7 +211,7 @@ class ExactProblem(Problem):
 
 
 def exact_increment(walker: Walker, tolerance: float = TOLERANCE) -> Look:
-    """Relax where things stand, with exact contacts, and look: forces are the exact ones."""
+    """Relax where things stand, with exact contacts and without friction, and look: forces are the exact ones."""
     engine = walker.engine
     engine.begin({})
     relaxation = engine.relaxation
@@ -239,8 +239,6 @@ def exact_increment(walker: Walker, tolerance: float = TOLERANCE) -> Look:
     bodies = _exact_discs(done.body_contacts, near, pulls, primitives)
     placement = walker.setup.world.placement()
     reactions = observables.reactions(bodies, owner, placement)
-    if done.friction is not None:
-        reactions += done.friction.reactions(owner, placement)
     exact = replace(done, grain_contacts=pairs, body_contacts=bodies, reactions=reactions)
     return replace(walker.look(exact), residual=problem.residual, converged=problem.solved)
 

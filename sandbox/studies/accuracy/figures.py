@@ -21,7 +21,11 @@ INCREMENTS = {
     0.5: ("#009E73", "s"),
     0.25: ("#E69F00", "D"),
 }
-PEERS = {"SciPy L-BFGS-B": ("#000000", "x"), "paper's chart": ("#D55E00", "+")}
+PEERS = {
+    "SciPy L-BFGS-B": ("#000000", "x"),
+    "SciPy DF-SANE": ("#CC79A7", "x"),
+    "paper's chart": ("#D55E00", "+"),
+}
 QUANTITIES = {
     "force": ("#0072B2", "o", "force"),
     "stress": ("#009E73", "s", "stress"),

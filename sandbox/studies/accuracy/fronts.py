@@ -1,4 +1,4 @@
-"""Pure functions of the study of accuracy: fronts, extrapolation, bifurcations, and how good an estimate is."""
+"""Pure functions of the study of accuracy: fronts, extrapolation, and bifurcations."""
 
 from __future__ import annotations
 
@@ -80,18 +80,6 @@ def first_beyond(places: Sequence[float], distances: Sequence[float], most: floa
 def rms(values: Sequence[float] | Floats) -> float:
     """Root of the mean square; nan of nothing."""
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
-
-
-def factor(scale: Floats, error: Floats, share: float = 0.95) -> float:
-    """The factor A for which A ``scale`` is at least ``error`` in that share of all cases."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(error > 0.0, error / scale, 0.0)
-    return float(np.quantile(ratio, share, method="higher")) if len(ratio) else math.nan
-
-
-def coverage(scale: Floats, error: Floats, amount: float) -> float:
-    """Share of the cases in which ``amount`` times ``scale`` is at least the error."""
-    return float(np.mean(error <= amount * scale)) if len(error) else math.nan
 
 
 def slope(x: Sequence[float], y: Sequence[float]) -> float:

@@ -19,7 +19,7 @@ from sandbox.studies.accuracy.chart import paper_chart
 from sandbox.studies.accuracy.contact import contact_job
 from sandbox.studies.accuracy.exact import exact_increment
 from sandbox.studies.accuracy.fronts import rms
-from sandbox.studies.accuracy.peers import l_bfgs_b, newton
+from sandbox.studies.accuracy.peers import df_sane, l_bfgs_b, newton
 from sandbox.studies.accuracy.protocols import FULL, QUICK, Protocol, Sweeps, protocol
 from sandbox.studies.accuracy.walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
 from sandbox.studies.common.pool import Stopped
@@ -27,13 +27,15 @@ from scenes import registry
 
 Stopping = Callable[[], bool]
 
-DATA_VERSION = 2  # raise it when a job measures something else
+DATA_VERSION = 3  # raise it when a job measures something else
 TIGHT = 1e-8  # relative residual of the walks that say where paths part
 CHECKED = 1e-9  # relative residual asked of the Newton polish
 COMPARED = 2  # starts from which peers, budgets and models are measured
 LONG = 0.25  # [s] a walk that takes so long is not timed again: several starts do that
 SLICE = 200  # force evaluations between two looks of a window
-PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, "paper's chart": paper_chart}
+CHART: dict[str, Solve] = {"paper's chart": paper_chart}
+PEERS: dict[str, Solve] = {"SciPy L-BFGS-B": l_bfgs_b, **CHART}
+ROOT_FINDERS: dict[str, Solve] = {"SciPy DF-SANE": df_sane, **CHART}  # with friction
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
 NO_TWIN = 1000  # grains beyond which the slow twin is not asked
 
@@ -103,6 +105,7 @@ class Bench:
             "length": plan.length,
             "step": setup.solver.step,
             "tolerance": setup.solver.tolerance,
+            "friction": self.start.friction is not None,
             "memory": self.start.friction is not None or setup.drag > 0.0,
             "scales": self.scales,
             "reference": self._described(),
@@ -112,7 +115,10 @@ class Bench:
             "sliced": self._sliced(),
         }
         if seed <= COMPARED:
-            for solve in PEERS.values():
+            # Friction is a field of forces and no gradient: what goes by an energy does not apply.
+            potential = self.start.friction is None
+            peers = PEERS if potential else ROOT_FINDERS
+            for solve in peers.values():
                 self.walk(Knobs(tolerance=0.1, solve=solve), 1)  # compiles
             result["budgets"] = [self._timed(knobs) for knobs in self._budgets()]
             result["peers"] = {
@@ -120,14 +126,12 @@ class Bench:
                     self._timed(Knobs(tolerance=tolerance, solve=solve), 1)
                     for tolerance in self.sweeps.peer_tolerances
                 ]
-                for name, solve in PEERS.items()
+                for name, solve in peers.items()
             }
             result["stiffness"] = [self._stiffness(c) for c in self.sweeps.stiffness]
-            result["overlap"] = self._overlap()
-            if self.start.friction is not None:
-                result["friction"] = list(self._friction())
+            result["overlap"] = self._overlap() if potential else None
         if seed == 1:
-            result["check"] = self._check()
+            result["check"] = self._check() if self.start.friction is None else None
         return result
 
     def errors(self, look: Look, exact: Look) -> dict[str, float]:
@@ -148,14 +152,12 @@ class Bench:
         return places
 
     def _compared(self, path: Walk, exact: Walk) -> list[dict[str, float]]:
-        """Errors against another walk wherever both have ended an increment, and how well each was relaxed."""
+        """Errors against another walk wherever both have ended an increment."""
         found = []
         for place in self._places(path.step):
             look, other = path.at(place), exact.at(place)
             if look is not None and other is not None:
-                row = {"place": float(place), **self.errors(look, other)}
-                row["residual"], row["scale"] = look.residual, look.scale
-                found.append(row)
+                found.append({"place": float(place), **self.errors(look, other)})
         return found
 
     def _tight(self) -> Iterator[dict[str, Any]]:
@@ -184,13 +186,13 @@ class Bench:
             "tolerance": knobs.tolerance,
             "step": knobs.step,
             "budget": knobs.max_iterations,
-            "repeats": knobs.repeats,
             "increments": len(looks),
             "seconds": median(path.seconds for path in paths),
             "solving": median(path.solving for path in paths),
             "iterations": float(np.mean([look.iterations for look in looks])),
             "residual": float(np.median([look.residual for look in looks])),
             "converged": float(np.mean([look.converged for look in looks])),
+            "beyond_cone": float(np.mean([look.beyond_cone for look in looks])),
             "errors": self._compared(path, self.reference),
             "own": self._compared(path, self.tightest[knobs.step]),
         }
@@ -205,14 +207,6 @@ class Bench:
     def _budgets(self) -> Iterator[Knobs]:
         for budget in self.sweeps.budgets:
             yield Knobs(tolerance=1e-13, max_iterations=budget)
-
-    def _friction(self) -> Iterator[dict[str, Any]]:
-        """The lag of friction: increments, and relaxations with the friction frozen anew, at a tight tolerance."""
-        # With drag, an increment is a step of time: repeated, it would be another one.
-        again = self.sweeps.repeats if self.start.setup.drag == 0.0 else ()
-        for repeats in (0, *again):
-            for step in (1.0, *self.sweeps.steps):
-                yield self._timed(Knobs(tolerance=1e-5, step=step, repeats=repeats), 1)
 
     def _stiffness(self, stiffness: float) -> dict[str, Any]:
         """Force at every place with contacts of that stiffness; and what a walk costs at the scene's own tolerance."""

@@ -1,7 +1,8 @@
 """The same increments solved by other means: SciPy's L-BFGS-B, and a Newton polish as a check that shares nothing with FIRE.
 
-Both see exactly what FIRE sees: the compiled energy and forces, the frozen friction, the prediction to start from, the tolerance
-and the way to measure it. Written for ``Knobs.solve``: they leave their answer in the relaxation.
+Both see exactly what FIRE sees: the compiled energy and forces, the prediction to start from, the tolerance and the way to
+measure it. Friction is a field of forces and no gradient, so there is no energy to go down: there SciPy's DF-SANE looks for the
+root of the forces. Written for ``Knobs.solve``: they leave their answer in the relaxation.
 """
 
 from __future__ import annotations
@@ -20,14 +21,45 @@ DIFFERENCE = 1e-7  # [R] of the finite differences of the Hessian
 SHIFT = 1e-8  # of the stiffest diagonal entry: holds rattlers, whose stiffness is nil
 
 
+MOST_OF_ROOT = 20_000  # evaluations of DF-SANE
+
+
 class _Solved(Exception):
-    """The tolerance is met."""
+    """The tolerance is met, or the evaluations are used up."""
 
 
 def l_bfgs_b(relaxation: Relaxation, tolerance: float) -> int:
     """SciPy's L-BFGS-B, stopped at its first evaluation that meets the tolerance. Returns its evaluations."""
     problem = Problem(relaxation, tolerance)
     minimize(problem)
+    return problem.evaluations
+
+
+def df_sane(relaxation: Relaxation, tolerance: float) -> int:
+    """SciPy's DF-SANE, a spectral method for roots that needs no energy, stopped as ``l_bfgs_b``. Returns its evaluations."""
+    from scipy import optimize
+
+    problem = Problem(relaxation, tolerance)
+    z = problem.start()
+    problem(z)
+    stiffness = float(problem.relaxation.packing.contact_stiffness.max())
+    last = z
+
+    def ask(trial: Floats) -> Floats:
+        nonlocal last
+        last = trial
+        _, slope = problem(trial)
+        if problem.solved or problem.evaluations >= MOST_OF_ROOT:
+            raise _Solved
+        return slope / stiffness  # so that its first step is one of steepest descent
+
+    if not problem.solved:
+        try:
+            options = {"fatol": 0.0, "ftol": 0.0, "maxfev": MOST_OF_ROOT}
+            last = optimize.root(ask, z, method="df-sane", options=options).x
+        except _Solved:
+            pass
+    problem.put(last)
     return problem.evaluations
 
 

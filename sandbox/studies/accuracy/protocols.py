@@ -53,7 +53,6 @@ class Sweeps:
     peer_tolerances: tuple[float, ...]
     stiffness: tuple[float, ...]
     budgets: tuple[int, ...]
-    repeats: tuple[int, ...]  # of the friction lag
     beyond_tolerances: tuple[float, ...]
     timings: int  # walks of which the middle time counts
 
@@ -67,7 +66,6 @@ FULL = Sweeps(
     peer_tolerances=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5),
     stiffness=(12.5, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0),
     budgets=(25, 50, 100, 200, 400, 800, 1600),
-    repeats=(1, 3),
     beyond_tolerances=(1e-1, 1e-2, 1e-3, 1e-5),
     timings=3,
 )
@@ -80,7 +78,6 @@ QUICK = Sweeps(
     peer_tolerances=(1e-1, 1e-2, 1e-3),
     stiffness=(25.0, 50.0, 100.0, 200.0),
     budgets=(50, 200, 800),
-    repeats=(1,),
     beyond_tolerances=(1e-1, 1e-2, 1e-3),
     timings=1,
 )

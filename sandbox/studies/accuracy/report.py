@@ -6,8 +6,18 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from sandbox.studies.accuracy.estimate_report import (
+    Estimates,
+    about_estimates,
+    estimate_rows,
+    percent,
+)
+from sandbox.studies.accuracy.fronts import slope
+
 Summary = Mapping[str, Any]
 Row = Sequence[str]
+
+OF_THE_INCREMENT = 1e-6  # a tolerance at which the error is that of the increments
 
 INTRODUCTION = """# Error against run time
 
@@ -23,17 +33,6 @@ errors are those of the increment instead of the path: against the tightest walk
 as tight ones stay together."""
 
 Cell = Callable[[str, Summary], str]
-
-
-def percent(value: float | None) -> str:
-    """A share as text: two digits."""
-    if value is None or not math.isfinite(value):
-        return "—"
-    if value == 0.0:
-        return "0"
-    if value >= 1.0:
-        return f"{100.0 * value:.0f} %"
-    return f"{100.0 * value:.2g} %" if value >= 1e-5 else f"{100.0 * value:.0e} %"
 
 
 def power(value: float | None) -> str:
@@ -65,19 +64,25 @@ def statement(summary: Summary) -> str:
     return f"mean force within {off}, each within {percent(default['force'])}, {cost}"
 
 
-def as_table(summaries: Mapping[str, Summary]) -> str:
-    """What ``scenes.accuracy`` reads, as TOML: statement and factor of the error estimate of each scene."""
+def as_table(statements: Mapping[str, str], estimates: Estimates) -> str:
+    """What ``scenes.accuracy`` reads, as TOML: the statement of each scene, and the bounds of each of its packings."""
     lines = [
-        "# Written by `python -m sandbox study accuracy`; scenes/accuracy.toml is that of a full run."
+        "# Written by `python -m sandbox study accuracy`; scenes/accuracy.toml is that of a full run.",
+        "# A bound: its factor, the power of what is left, the power of the farthest move; see scenes/accuracy.py.",
     ]
-    for name, summary in summaries.items():
-        found = summary.get("estimate", {"factor": 0.0, "power": 1.0})
-        lines += ["", f"[{name}]", f'statement = "{statement(summary)}"']
-        lines += [f"error_{key} = {float(found[key]):.3g}" for key in ("factor", "power")]
+    for name, text in statements.items():
+        lines += ["", f"[{name}]", f'statement = "{text}"']
+        for packing, found in estimates.get(name, {}).items():
+            lines += ["", f"[{name}.{packing}]"]
+            for which, bound in found["bounds"].items():
+                numbers = ", ".join(f"{float(value):.3g}" for value in bound)
+                lines.append(f"{which} = [{numbers}]")
     return "\n".join(lines) + "\n"
 
 
-def as_markdown(summaries: Mapping[str, Summary], about: Mapping[str, Any], apart: float) -> str:
+def as_markdown(
+    summaries: Mapping[str, Summary], estimates: Estimates, about: Mapping[str, Any], apart: float
+) -> str:
     """The whole report."""
     relaxing = {name: s for name, s in summaries.items() if "contact" not in s}
     parts = [INTRODUCTION.format(apart=apart), _machine(about)]
@@ -89,18 +94,24 @@ def as_markdown(summaries: Mapping[str, Summary], about: Mapping[str, Any], apar
             PEERS,
             _section("The reference, and what confirms it", _references(relaxing)),
             REFERENCE,
+            _section("Length of the increment", _lengths(relaxing)),
+            LENGTHS,
             _section("Contact stiffness C", _stiffness(relaxing)),
             STIFFNESS,
             _section("The contact law against exact contact of ellipses", _overlaps(relaxing)),
             _section("An increment cut short", _budgets(relaxing)),
             BUDGETS,
         ]
-        if any("friction" in summary for summary in relaxing.values()):
-            parts += [_section("Lag of friction", _friction(relaxing)), FRICTION]
+        rubbing = {name: s for name, s in relaxing.items() if s["friction"]}
+        if rubbing:
+            parts += [_section("Contacts beyond the friction cone", _friction(rubbing)), FRICTION]
         parts += [
             _section("Beyond the first bifurcation: distributions over seeds", _beyond(relaxing)),
-            _section("The error estimate of the window and of the table", _estimates(relaxing)),
-            ESTIMATE,
+        ]
+    if estimates:
+        parts += [
+            _section("The live estimate of window and table", estimate_rows(estimates)),
+            about_estimates(estimates),
         ]
     for name, summary in summaries.items():
         if "contact" in summary:
@@ -108,7 +119,8 @@ def as_markdown(summaries: Mapping[str, Summary], about: Mapping[str, Any], apar
                 _section(f"`{name}`: nothing relaxes, contact distance only", _contact(summary))
             )
     pictures = [*summaries, "stiffness"] if relaxing else list(summaries)
-    parts += ["## Plots", *(f"![{name}]({name}.png)" for name in pictures)]
+    if pictures:
+        parts += ["## Plots", *(f"![{name}]({name}.png)" for name in pictures)]
     return "\n\n".join(parts) + "\n"
 
 
@@ -117,7 +129,9 @@ program is ahead. SciPy gets the compiled forces, variables scaled by the same i
 right length, and stops at its first evaluation that meets the tolerance; it does not get below a residual of \
 about 1e-6, where its line search drowns in the rounding of the energy. The paper's chart is (x, y, θ, a, b), \
 the same FIRE, the chain rule included (some 10 to 20 % of an iteration); it is judged by the forces in its own \
-chart."""
+chart. Friction is a field of forces and no gradient, so minimisers do not apply there; DF-SANE finds \
+roots, with 20,000 evaluations an increment at most. Nor are Newton's method and exact contacts asked there, which start from \
+L-BFGS-B."""
 
 REFERENCE = """Check: the first increment of the reference solved again by L-BFGS-B and Newton with a Hessian of finite \
 differences; and the forces of the slow twin, written from the equations in another chart, at the relaxed start, \
@@ -132,11 +146,11 @@ BUDGETS = """Error of the force if an increment ended after so many force evalua
 the state of the last finished increment and goes on with the next one's relaxation in slices, which changes no \
 bit of it."""
 
-FRICTION = """At a tolerance of 1e-5. Repeated: relaxed again with the friction frozen anew, without moving."""
+LENGTHS = """Error of the force at a tolerance of 1e-6, so that it is that of the increments, and the power of the increment \
+that it follows. No number where errors are those of the increment, and not of the path."""
 
-ESTIMATE = """Estimated error of the force on the handle = A × mean contact force × residual^p. A and p are those of \
-the least estimates that are above the error in 90 % of one half of the increments (all tolerances); \
-the share is that of the other half. It is the error of the relaxation: that of the increments comes on top."""
+FRICTION = """Share of the contacts that pull harder than 1.05 μ times their normal force, counted anew after each increment \
+of the scene's own length; mean over increments and starts."""
 
 
 def _section(title: str, rows: Iterator[Row]) -> str:
@@ -200,13 +214,17 @@ def _fastest(summary: Summary, error: float) -> str:
 
 
 def _peers(summaries: Mapping[str, Summary]) -> Iterator[Row]:
-    names = list(next(iter(summaries.values()))["lead"])
+    names = list(dict.fromkeys(name for summary in summaries.values() for name in summary["lead"]))
     yield ("scene", *(f"{name}: {what}" for name in names for what in ("mean", "least")))
     for scene, summary in summaries.items():
         lead = summary["lead"]
         yield (
             f"`{scene}`",
-            *(times(lead[name][what]) for name in names for what in ("middle", "least")),
+            *(
+                times(lead.get(name, {}).get(what))
+                for name in names
+                for what in ("middle", "least")
+            ),
         )
 
 
@@ -222,16 +240,14 @@ def _references(summaries: Mapping[str, Summary]) -> Iterator[Row]:
         "slow twin",
     )
     for name, summary in summaries.items():
-        reference, check = summary["reference"], summary["check"]
+        reference, check = summary["reference"], summary["check"] or {}
         yield (
             f"`{name}`",
             f"1/{1.0 / reference['step']:.0f} of {summary['increment']:g} R",
             power(reference["residual"]),
             f"{100.0 * reference['converged']:.0f} %",
             percent(reference["increment_error"]),
-            power(check["force"]),
-            power(check["position"]),
-            power(check["twin_residual"]),
+            *(power(check.get(what)) for what in ("force", "position", "twin_residual")),
         )
 
 
@@ -253,6 +269,8 @@ def _overlaps(summaries: Mapping[str, Summary]) -> Iterator[Row]:
     yield ("scene", "mean aspect ratio", "force", "stress", "positions [R]", "energy")
     for name, summary in summaries.items():
         found = summary["overlap"]
+        if found is None:
+            continue
         yield (
             f"`{name}`",
             f"{found['aspect']:.3f}",
@@ -274,18 +292,36 @@ def _budgets(summaries: Mapping[str, Summary]) -> Iterator[Row]:
         )
 
 
-def _friction(summaries: Mapping[str, Summary]) -> Iterator[Row]:
-    yield ("scene", "repeated", "increment", "force", "positions [R]", "ms an increment")
+def _lengths(summaries: Mapping[str, Summary]) -> Iterator[Row]:
+    steps = sorted(
+        {dot["step"] for summary in summaries.values() for dot in summary["dots"]}, reverse=True
+    )
+    yield ("scene", "increment", *(f"{step:g} ×" for step in steps), "error ∝ increment^")
     for name, summary in summaries.items():
-        for dot in summary.get("friction", ()):
-            yield (
-                f"`{name}`",
-                str(dot["repeats"]),
-                f"{dot['step']:g} × {summary['increment']:g} R",
-                percent(dot["force"]),
-                power(dot["position"]),
-                milliseconds(dot["increment"]),
-            )
+        path = summary["against"] == "path"
+        found = {
+            dot["step"]: dot["force"]
+            for dot in summary["dots"]
+            if path and dot["tolerance"] == OF_THE_INCREMENT
+        }
+        grown = slope(list(found), list(found.values()))
+        yield (
+            f"`{name}`",
+            f"{summary['increment']:g} R",
+            *(percent(found.get(step)) for step in steps),
+            f"{grown:.2f}" if math.isfinite(grown) else "—",
+        )
+
+
+def _friction(summaries: Mapping[str, Summary]) -> Iterator[Row]:
+    tolerances = sorted(
+        {dot["tolerance"] for summary in summaries.values() for dot in summary["dots"]},
+        reverse=True,
+    )
+    yield ("scene", *(f"tolerance {power(tolerance)}" for tolerance in tolerances))
+    for name, summary in summaries.items():
+        found = {dot["tolerance"]: dot for dot in summary["dots"] if dot["step"] == 1.0}
+        yield (f"`{name}`", *(percent(found[t]["beyond_cone"]) for t in tolerances))
 
 
 def _beyond(summaries: Mapping[str, Summary]) -> Iterator[Row]:
@@ -303,27 +339,6 @@ def _beyond(summaries: Mapping[str, Summary]) -> Iterator[Row]:
 
 def _spread(mean: float, spread: float) -> str:
     return f"{mean:.3g} ± {spread:.2g}" if math.isfinite(spread) else f"{mean:.3g}"
-
-
-def _estimates(summaries: Mapping[str, Summary]) -> Iterator[Row]:
-    yield (
-        "scene",
-        "A",
-        "p",
-        "error below the estimate",
-        "increments",
-        "estimate at the default, of the force",
-    )
-    for name, summary in summaries.items():
-        found = summary["estimate"]
-        yield (
-            f"`{name}`",
-            f"{found['factor']:.3g}",
-            f"{found['power']:.2f}",
-            f"{100.0 * found['coverage']:.1f} %",
-            str(found["increments"]),
-            percent(found["typical"]),
-        )
 
 
 def _contact(summary: Summary) -> Iterator[Row]:

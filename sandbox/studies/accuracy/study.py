@@ -1,4 +1,7 @@
-"""The study of accuracy: error against run time, scene by scene. Which jobs there are, carry them out, write what they found."""
+"""The study of accuracy: error against run time, scene by scene, and the live estimate of the error.
+
+Which jobs there are, carry them out, write what they found.
+"""
 
 from __future__ import annotations
 
@@ -15,21 +18,27 @@ from typing import Any
 from core.files import atomic_write
 from sandbox.interrupts import deferred
 from sandbox.studies.accuracy import job as accuracy_job
+from sandbox.studies.accuracy import live
+from sandbox.studies.accuracy.estimate import calibrate
+from sandbox.studies.accuracy.estimate_report import Estimates, as_runs
 from sandbox.studies.accuracy.job import Job
+from sandbox.studies.accuracy.live import Drive, drives
 from sandbox.studies.accuracy.protocols import APART, PROTOCOLS, protocol
 from sandbox.studies.accuracy.report import as_markdown, as_table, statement
 from sandbox.studies.accuracy.summary import summarise
 from sandbox.studies.common.folder import finite, machine, write_text
 from sandbox.studies.common.pool import Pool, stopping
 from scenes import registry
+from scenes.accuracy import accuracy_of
 
 FORMAT = "auxetic-sandbox accuracy"
-VERSION = 1
+VERSION = 2
 DIGITS = 6  # of a number in results.json
 # One thread a process: peers and polishes call libraries that would take all cores, and wait for one another.
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
-Measure = Callable[[Job], dict[str, Any]]
+Task = Job | Drive
+Measure = Callable[[Task], dict[str, Any]]
 
 
 @dataclass(frozen=True)
@@ -54,13 +63,20 @@ def study(
     scenes: Sequence[str] | None = None,
     quick: bool = False,
     jobs: int = 2,
+    only_estimate: bool = False,
+    measured: int = live.MEASURED,
     measure: Measure | None = None,
 ) -> Outcome:
-    """Measure. Jobs that were finished in ``folder`` before are not carried out again; Ctrl-C leaves what is finished."""
+    """Measure. Jobs that were finished in ``folder`` before are not carried out again; Ctrl-C leaves what is finished.
+
+    ``only_estimate``: nothing but the live estimate, to which about ``measured`` increments of each drive are fitted.
+    """
     began = time.perf_counter()
     chosen = choose(scenes)
-    plan = [Job(n, seed + 1, quick) for n in chosen for seed in range(protocol(n, quick).starts)]
-    found: dict[Job, dict[str, Any]] = {}
+    walks = [Job(n, seed + 1, quick) for n in chosen for seed in range(protocol(n, quick).starts)]
+    driven = [drive for name in chosen for drive in drives(name, quick, measured)]
+    plan: list[Task] = [*driven] if only_estimate else [*walks, *driven]
+    found: dict[Task, dict[str, Any]] = {}
     failures: dict[str, str] = {}
     for job in plan:
         kept = _read(folder, job)
@@ -71,10 +87,16 @@ def study(
         _run([job for job in plan if job not in found], folder, jobs, found, failures, measure)
     except KeyboardInterrupt:
         return Outcome({}, failures, len(found), interrupted=True)
+    whole = [name for name in chosen if name not in failures]
     summaries = {
-        name: summarise([found[job] for job in plan if job.scene == name])
-        for name in chosen
-        if name not in failures
+        name: summarise([found[job] for job in walks if job.scene == name])
+        for name in whole
+        if not only_estimate
+    }
+    estimates = {
+        name: packings
+        for name in whole
+        if (packings := _calibrated(found, [drive for drive in driven if drive.scene == name]))
     }
     about = {
         "quick": quick,
@@ -83,21 +105,36 @@ def study(
         "seconds": round(time.perf_counter() - began, 1),
         **machine(),
     }
-    _write(folder, summaries, about)
-    statements = {name: statement(summary) for name, summary in summaries.items()}
+    statements = {name: accuracy_of(name).statement for name in whole}  # as they are published
+    statements |= {name: statement(summary) for name, summary in summaries.items()}
+    _write(folder, summaries, estimates, statements, about)
     return Outcome(statements, failures, len(found), interrupted=False)
 
 
-def execute(job: Job) -> dict[str, Any]:
+def execute(job: Task) -> dict[str, Any]:
     """Carry a job out in a process of a pool."""
+    if isinstance(job, Drive):
+        return live.measure(job, stopping)
     return accuracy_job.measure(job, stopping)
 
 
+def _calibrated(
+    found: Mapping[Task, Mapping[str, Any]], driven: Sequence[Drive]
+) -> dict[str, dict[str, Any]]:
+    """The estimate of each packing of a scene in which the handle feels a force."""
+    kinds = dict.fromkeys(drive.packing for drive in driven)
+    one = {
+        kind: calibrate({drive.seed: found[drive] for drive in driven if drive.packing == kind})
+        for kind in kinds
+    }
+    return {kind: estimate for kind, estimate in one.items() if estimate is not None}
+
+
 def _run(
-    missing: Sequence[Job],
+    missing: Sequence[Task],
     folder: Path,
     jobs: int,
-    found: dict[Job, dict[str, Any]],
+    found: dict[Task, dict[str, Any]],
     failures: dict[str, str],
     measure: Measure | None,
 ) -> None:
@@ -133,7 +170,7 @@ def _one_thread() -> Iterator[None]:
                 os.environ[name] = value
 
 
-def _read(folder: Path, job: Job) -> dict[str, Any] | None:
+def _read(folder: Path, job: Task) -> dict[str, Any] | None:
     """A finished job; None for one that is not, or a damaged file."""
     try:
         data = json.loads((folder / "runs" / f"{job.key()}.json").read_text(encoding="utf-8"))
@@ -142,30 +179,40 @@ def _read(folder: Path, job: Job) -> dict[str, Any] | None:
     return data if isinstance(data, dict) else None
 
 
-def _keep(folder: Path, job: Job, data: Mapping[str, Any]) -> None:
+def _keep(folder: Path, job: Task, data: Mapping[str, Any]) -> None:
     with deferred(), atomic_write(folder / "runs" / f"{job.key()}.json") as file:
         file.write(json.dumps(data).encode())
 
 
-def _write(folder: Path, summaries: Mapping[str, Any], about: Mapping[str, Any]) -> None:
+def _write(
+    folder: Path,
+    summaries: Mapping[str, Any],
+    estimates: Estimates,
+    statements: Mapping[str, str],
+    about: Mapping[str, Any],
+) -> None:
     """Pictures, numbers, tables. Raises InputError if one cannot be written."""
     from sandbox.studies.accuracy.figures import draw_scene, draw_stiffness
 
     for name, summary in summaries.items():
         draw_scene(name, registry.get(name).title, summary, folder / f"{name}.png")
-    draw_stiffness(summaries, folder / "stiffness.png")
+    if summaries:
+        draw_stiffness(summaries, folder / "stiffness.png")
     data = {
         "format": FORMAT,
         "version": VERSION,
         **about,
         "apart": APART,
-        "statements": {name: statement(summary) for name, summary in summaries.items()},
+        "statements": statements,
         "scenes": _rounded(summaries),
+        "estimates": _rounded(estimates),
     }
     text = json.dumps(finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_text(folder / "results.json", text)
-    write_text(folder / "accuracy.md", as_markdown(summaries, about, APART))
-    write_text(folder / "accuracy.toml", as_table(summaries))
+    write_text(folder / "accuracy.md", as_markdown(summaries, estimates, about, APART))
+    write_text(folder / "accuracy.toml", as_table(statements, estimates))
+    if estimates:
+        write_text(folder / "estimate.csv", as_runs(estimates))
 
 
 def _rounded(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""From the jobs of one scene to what is reported: points of the plots, fronts, leads over peers, model errors, the estimate."""
+"""From the jobs of one scene to what is reported: points of the plots, fronts, leads over peers, model errors."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.studies.accuracy.fronts import (
-    coverage,
     extrapolate,
-    factor,
     first_beyond,
     front,
     lead,
@@ -24,10 +22,7 @@ from sandbox.studies.accuracy.protocols import APART
 Job = Mapping[str, Any]
 
 QUANTITIES = ("force", "stress", "position", "shape", "energy")
-SHARE = 0.9  # of the increments in which the estimate is to be above the error
 MOST = 0.5  # of the scene's own increments must end before a bifurcation for errors along the path to be worth a name
-POWERS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3)  # of the residual in the estimate, to choose from
-LEAST_RESIDUAL = 1e-5  # of an increment by which the estimate is judged
 TIGHT = 1e-6  # a tolerance up to which walks say where paths part
 FRAME = 1.0 / 60.0  # [s]
 
@@ -39,12 +34,12 @@ class Dot:
     tolerance: float
     step: float  # of the scene's own increment
     budget: int
-    repeats: int
     solving: float  # processor time of the minimiser for the way of one of the scene's own increments [s]
     increment: float  # processor time of one whole increment [s]
     iterations: float
     residual: float
     converged: float
+    beyond_cone: float  # mean share of contacts that pull harder than friction allows
     places: int
     force: float  # relative to the mean magnitude, rms
     force_most: float
@@ -73,12 +68,12 @@ def _dot(walks: Sequence[Mapping[str, Any]], length: float) -> Dot:
         tolerance=first["tolerance"],
         step=first["step"],
         budget=first["budget"],
-        repeats=first["repeats"],
         solving=float(np.mean([walk["solving"] for walk in walks])) / length,
         increment=sum(walk["seconds"] for walk in walks) / max(increments, 1),
         iterations=float(np.mean([walk["iterations"] for walk in walks])),
         residual=float(np.median([walk["residual"] for walk in walks])),
         converged=float(np.mean([walk["converged"] for walk in walks])),
+        beyond_cone=float(np.mean([walk["beyond_cone"] for walk in walks])),
         places=len(places),
         force_most=max((place["force"] for place in places), default=math.nan),
         **error,
@@ -108,7 +103,7 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
     best = _front(shown if path else [dot for dot in shown if dot.step == 1.0])
     ours = _front([dot for dot in shown if dot.step == 1.0])
     default = default_dot(grid, first["tolerance"])
-    summary: dict[str, Any] = {
+    return {
         "grains": first["grains"],
         "starts": len(jobs),
         "length": length,
@@ -119,6 +114,7 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "bifurcations": ends,
         "reference": _reference(jobs),
         "check": first["check"],
+        "friction": first["friction"],
         "dots": [asdict(dot) for dot in grid],
         "default": asdict(default),
         "shown": {
@@ -133,13 +129,8 @@ def summarise(jobs: Sequence[Job]) -> dict[str, Any]:
         "lead": {name: _lead(ours, found) for name, found in peers.items()},
         "stiffness": stiffness([job["stiffness"] for job in compared]),
         "overlap": _overlap(compared),
-        "estimate": _estimate(jobs),
         "beyond": beyond([job["beyond"] for job in jobs]),
     }
-    if "friction" in first:
-        found = dots([job["friction"] for job in compared], length)
-        summary["friction"] = [asdict(dot) for dot in found]
-    return summary
 
 
 def bifurcation(job: Job) -> float | None:
@@ -188,10 +179,8 @@ def own_end(job: Job, step: float) -> float | None:
 
 
 def _cut(job: Job, cut: Callable[[Any], list[dict[str, Any]]], end: float | None) -> Job:
-    """The job with the lists of walks cut, forces of each stiffness too, and what calibrates the estimate picked out."""
-    parts: dict[str, Any] = {
-        name: cut(job[name]) for name in ("walks", "budgets", "friction") if name in job
-    }
+    """The job with the lists of walks cut, forces of each stiffness too."""
+    parts: dict[str, Any] = {name: cut(job[name]) for name in ("walks", "budgets") if name in job}
     if "peers" in job:
         parts["peers"] = {name: cut(walks) for name, walks in job["peers"].items()}
         whole = None if end is None else max(1, math.ceil(end) - 1)  # increments; one at least
@@ -199,16 +188,7 @@ def _cut(job: Job, cut: Callable[[Any], list[dict[str, Any]]], end: float | None
             {**row, "force": row["force"][:whole], "pressure": row["pressure"][:whole]}
             for row in job["stiffness"]
         ]
-    rows = [row for walk in job["walks"] if walk["step"] == 1.0 for row in _trusted(walk)]
-    kept = _before(rows, own_end(job, 1.0))
-    force = job["scales"]["force"]
-    parts["estimate"] = [(row["residual"], row["scale"], row["force"] * force) for row in kept]
     return {**job, **parts}
-
-
-def _trusted(walk: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Increments by which an estimate can be judged: the tightest walk is much better than they are."""
-    return [row for row in walk["own"] if row["residual"] >= LEAST_RESIDUAL]
 
 
 def _before(rows: Sequence[Mapping[str, Any]], end: float | None) -> list[Mapping[str, Any]]:
@@ -258,9 +238,11 @@ def _reference(jobs: Sequence[Job]) -> dict[str, float]:
     }
 
 
-def _overlap(jobs: Sequence[Job]) -> dict[str, float]:
-    """The middle one over starts: one that gives way to another balance says nothing about the law."""
+def _overlap(jobs: Sequence[Job]) -> dict[str, float] | None:
+    """The middle one over starts: one that gives way to another balance says nothing about the law. None with friction."""
     names = jobs[0]["overlap"]
+    if names is None:
+        return None
     return {name: float(np.median([job["overlap"][name] for job in jobs])) for name in names}
 
 
@@ -291,46 +273,6 @@ def stiffness(groups: Sequence[Sequence[Mapping[str, Any]]]) -> dict[str, Any]:
         "error_power": slope([values[k] for k in middle], [found["force"][k] for k in middle]),
         "cost_power": slope(values, solving),
     }
-
-
-def estimate(groups: Sequence[Sequence[Sequence[float]]]) -> dict[str, float]:
-    """error ≤ A × mean contact force × residual^p: A and p from every second increment, tried on the others.
-
-    ``groups`` are (residual, mean contact force [k R], error of the force [k R]) of each start. A is such that the estimate is
-    right in the share ``SHARE``; of all such pairs the one whose estimates are least (geometric mean) is taken. p is 1 where
-    errors are in proportion to the residual, less where grains find another balance at every tolerance.
-    """
-    found = np.array([row for group in groups for row in group]).reshape(-1, 3)
-    residual, force, error = found.T
-    fits = []
-    for power in POWERS:
-        scale = force * residual**power
-        amount = factor(scale[::2], error[::2], SHARE)
-        size = amount * float(np.exp(np.mean(np.log(scale)))) if len(scale) else math.nan
-        fits.append((size, -power, amount))
-    _, negative, amount = min(fits)
-    power = -negative
-    scale = force * residual**power
-    return {
-        "factor": amount,
-        "power": power,
-        "coverage": coverage(scale[1::2], error[1::2], amount),
-        "increments": len(scale[1::2]),
-        "median_ratio": float(np.median(error / scale)) if len(found) else math.nan,
-    }
-
-
-def _estimate(jobs: Sequence[Job]) -> dict[str, float]:
-    """The calibration, and what the estimate comes to at the scene's own tolerance, relative to the force."""
-    found = estimate([job["estimate"] for job in jobs])
-    contact = np.array([row[1] for job in jobs for row in job["estimate"]])
-    force = float(np.mean([job["scales"]["force"] for job in jobs]))
-    tolerance = float(jobs[0]["tolerance"])
-    found["typical"] = math.nan
-    if len(contact) and force > 0.0:
-        per_force = float(contact.mean()) / force
-        found["typical"] = found["factor"] * per_force * tolerance ** found["power"]
-    return found
 
 
 def beyond(groups: Sequence[Sequence[Mapping[str, float]]]) -> list[dict[str, float]]:

@@ -35,7 +35,6 @@ MOST_ITERATIONS = (
 LEAD_TOLERANCE = 1e-3  # on the way to the start
 LEAD_ITERATIONS = 20_000
 MOST_LEAD = 3  # times its length that a lead may take to feel a force
-RESTS = 3  # at the start with friction, which is frozen anew each time: until caps and forces agree
 LEAST_CONTACTS = 2  # of a grain that bears force
 
 
@@ -47,7 +46,6 @@ class Knobs:
     step: float = 1.0
     max_iterations: int = MOST_ITERATIONS
     contact_stiffness: float | None = None  # None: the scene's own
-    repeats: int = 0  # relaxations with the friction of an increment frozen anew, beyond the first
     solve: Solve | None = None  # None: FIRE
     slice: int = MOST_ITERATIONS  # force evaluations between two looks, as a window takes them
 
@@ -87,6 +85,7 @@ class Look:
     residual: float
     scale: float  # mean contact force [k R]
     converged: bool
+    beyond_cone: float = 0.0  # share of contacts that pull harder than friction allows
     iterations: int = 0  # force evaluations
     seconds: float = 0.0  # processor time of the whole increment
     solving: float = 0.0  # and of the minimiser alone
@@ -145,8 +144,7 @@ def begin(
         if done >= lead and np.hypot(*look.force) >= least_force:
             break
     if setup.drag == 0.0 and setup.relaxes:
-        for _ in range(1 if setup.friction is None else RESTS):
-            walker.rest(TIGHT)
+        walker.rest(TIGHT)
     engine = walker.engine
     return Start(
         scene,
@@ -214,9 +212,6 @@ class Walker:
         box = targets.pop(CELL, None)
         began = clock()
         done, iterations, solving = self._relaxed(targets, self._cell(box))
-        for _ in range(self.knobs.repeats):
-            done, more, longer = self._relaxed({}, None)
-            iterations, solving = iterations + more, solving + longer
         seconds = clock() - began
         look = self.look(self._let_go(done))
         return replace(look, iterations=iterations, seconds=seconds, solving=solving)
@@ -280,6 +275,7 @@ class Walker:
             residual=report.residual,
             scale=report.mean_contact_force,
             converged=report.reason is StopReason.CONVERGED,
+            beyond_cone=done.beyond_cone,
         )
 
 

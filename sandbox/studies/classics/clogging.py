@@ -118,9 +118,7 @@ def _judge_outflow(rows: Sequence[Row]) -> list[Check]:
     """Grains out by ``fall``, of the same packings: a ratio of means, paired by seeds."""
     out = {fall: [row["out"] for row in where(rows, fall=fall)] for fall in FALLS}
     means = ", ".join(f"{sum(out[fall]) / len(out[fall]):.1f} at {fall:g} R" for fall in FALLS)
-    reason = (
-        "the outflow of single drains scatters by about as much as it is, so that of 200 pairs a quarter is told for sure"
-    )
+    reason = "the outflow of single drains scatters by about as much as it is, so that of 200 pairs a quarter is told for sure"
     return [
         Check(
             f"outflow at fall {fall:g} R over that at {FALLS[1]:g} R ({means})",
