@@ -190,8 +190,8 @@ class Quasistatic:
         primitives, _ = self.world.primitives()
         if self.system.relaxes:
             rows_now = endless(primitives, self.packing.box)
-            ways = self._start, self.packing.state, rows_then, rows_now
-            self._through = passed_faces(touched, *ways)
+            places = self._start, self.packing.state, rows_then, rows_now
+            self._through = passed_faces(touched, *places)
         solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
