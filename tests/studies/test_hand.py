@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.lessons import tours
+from sandbox.studies.common.intervals import wilson
 from sandbox.studies.hand import report, study
 from sandbox.studies.hand.jobs import Job, carry_out
 from sandbox.studies.hand.tour_claims import CLAIMS, TENDENCIES, play
@@ -127,7 +128,7 @@ def test_wilson_interval_by_its_closed_form() -> None:
     """z = 1.96: (p + z²/2n ± z √(p(1−p)/n + z²/4n²)) / (1 + z²/n)."""
     z, n, p = 1.959963984540054, 20, 0.6
     middle, half = p + z * z / (2 * n), z * (p * (1 - p) / n + z * z / (4 * n * n)) ** 0.5
-    low, high = report.wilson(12, 20)
+    low, high = wilson(12, 20)
     assert low == pytest.approx((middle - half) / (1 + z * z / n))
     assert high == pytest.approx((middle + half) / (1 + z * z / n))
-    assert report.wilson(20, 20)[1] == 1.0
+    assert wilson(20, 20)[1] == 1.0
