@@ -108,12 +108,12 @@ class Course:
         report = increment.report
         usual = most = math.nan
         if report.reason not in FAILED:
-            force, unbalanced = (
+            scale, unbalanced = (
                 report.mean_contact_force,
                 float(np.linalg.norm(increment.unbalanced)),
             )
-            left = left_over(unbalanced, report.residual, force)
-            usual, most = estimate.errors(force, left, max(farthest / setup.solver.step, 1.0))
+            left = left_over(unbalanced, report.residual, scale)
+            usual, most = estimate.errors(scale, left, max(farthest / setup.solver.step, 1.0))
         return Row(
             increment=number,
             stroke=self.stroke,

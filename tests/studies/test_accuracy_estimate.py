@@ -171,13 +171,9 @@ def test_a_miss_of_the_aim_has_a_star() -> None:
 
 
 def test_study_of_the_estimate_alone(tmp_path: Path) -> None:
-    def some(task: accuracy.Task) -> dict[str, Any]:
-        assert isinstance(task, Drive)
-        return made_up(task.seed)
-
     (tmp_path / "runs").mkdir()
     for drive in drives("intruder", quick=True):
-        (tmp_path / "runs" / f"{drive.key()}.json").write_text(json.dumps(some(drive)))
+        (tmp_path / "runs" / f"{drive.key()}.json").write_text(json.dumps(made_up(drive.seed)))
     outcome = accuracy.study(tmp_path, scenes=["intruder"], quick=True, only_estimate=True)
     assert outcome.jobs == 6
     table = tomllib.loads((tmp_path / "accuracy.toml").read_text())["intruder"]

@@ -19,10 +19,11 @@ from sandbox.cli import main as cli
 from sandbox.session.commands import Protocol as Drive
 from sandbox.session.session import Session
 from sandbox.studies.accuracy import study as accuracy
+from sandbox.studies.accuracy.estimate_report import percent
 from sandbox.studies.accuracy.job import Job, measure
 from sandbox.studies.accuracy.peers import df_sane
 from sandbox.studies.accuracy.protocols import PROTOCOLS, QUICK
-from sandbox.studies.accuracy.report import as_markdown, as_table, percent, statement
+from sandbox.studies.accuracy.report import as_markdown, as_table, statement
 from sandbox.studies.accuracy.summary import (
     along_path,
     bifurcation,
