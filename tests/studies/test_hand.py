@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from sandbox.lessons import tours
-from sandbox.studies.common.intervals import wilson
 from sandbox.studies.hand import report, study
 from sandbox.studies.hand.jobs import Job, carry_out
 from sandbox.studies.hand.tour_claims import CLAIMS, TENDENCIES, play
