@@ -205,7 +205,7 @@ def _write(
         "apart": APART,
         "statements": statements,
         "scenes": _rounded(summaries),
-        "estimates": _rounded(estimates),
+        "estimates": _rounded(_without_drives(estimates)),
     }
     text = json.dumps(finite(data), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_text(folder / "results.json", text)
@@ -213,6 +213,17 @@ def _write(
     write_text(folder / "accuracy.toml", as_table(statements, estimates))
     if estimates:
         write_text(folder / "estimate.csv", as_runs(estimates))
+
+
+def _without_drives(estimates: Estimates) -> dict[str, Any]:
+    """The estimates without what each drive came to, which estimate.csv has."""
+    return {
+        scene: {
+            kind: {name: value for name, value in one.items() if name != "drives"}
+            for kind, one in packings.items()
+        }
+        for scene, packings in estimates.items()
+    }
 
 
 def _rounded(value: Any) -> Any:
