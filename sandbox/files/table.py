@@ -48,7 +48,7 @@ def write_csv(path: str | os.PathLike[str], history: Table) -> None:
     writer.writerow(history.header())
     writer.writerows(history.rows())
     try:
-        with atomic_write(Path(path).resolve()) as file:
+        with atomic_write(path) as file:
             file.write(text.getvalue().encode())
     except OSError as error:
         kept = "; the earlier file was kept" if Path(path).exists() else ""
