@@ -21,7 +21,7 @@ from typing import Any
 import numba
 from llvmlite import binding
 
-from core.kernel_cache import kept
+from core.kernel_cache import keep
 
 FAST_MATH = {"reassoc", "contract", "arcp", "nsz"}
 NO_GATHER = "+prefer-no-gather"
@@ -74,7 +74,6 @@ def kernel(
     def decorate(f: Callable[..., Any]) -> Any:
         flags: dict[str, Any] = {
             "nogil": True,
-            "cache": True,
             "error_model": "numpy",
             "fastmath": FAST_MATH,
             # One copy of the code: else a first run, which has both, may call another copy of a
@@ -84,7 +83,8 @@ def kernel(
         if noalias and NOALIAS_PIPELINE is not None:
             flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)
-        with kept(f.__code__.co_filename):
-            return numba.njit(**flags)(f)
+        dispatcher = numba.njit(**flags)(f)
+        keep(dispatcher)
+        return dispatcher
 
     return decorate if function is None else decorate(function)

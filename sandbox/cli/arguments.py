@@ -9,12 +9,12 @@ import argparse
 import math
 import os
 import re
-import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from core.errors import InputError, did_you_mean
+from core.files import clear, followed, try_writing
 
 SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
@@ -90,7 +90,7 @@ def one_of(*choices: str) -> Callable[[str], str]:
 
 
 def size(text: str) -> tuple[int, int]:
-    """``WIDTHxHEIGHT`` [px], both even as video needs them."""
+    """``WIDTHxHEIGHT`` [px]."""
     match = re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", text.strip().lower())
     if match is None:
         raise InputError(f"{text!r} is not a size: write WIDTHxHEIGHT, such as 1280x720")
@@ -102,9 +102,6 @@ def size(text: str) -> tuple[int, int]:
     if not fits:
         low, high = ("{}x{}".format(*limit) for limit in (SMALLEST_SIZE, LARGEST_SIZE))
         raise InputError(f"{text} is out of range: use a size from {low} to {high}")
-    if width % 2 or height % 2:
-        even = f"{width + width % 2}x{height + height % 2}"
-        raise InputError(f"video needs even numbers, not {text}: use {even}")
     return width, height
 
 
@@ -138,6 +135,14 @@ def number(low: float, high: float) -> Callable[[str], float]:
     return parse
 
 
+def check_size(size: tuple[int, int], suffix: str) -> None:
+    """A film needs even numbers, as it has a colour for each four pixels; pictures and animations take any."""
+    width, height = size
+    if suffix == ".mp4" and (width % 2 or height % 2):
+        even = f"{width + width % 2}x{height + height % 2}"
+        raise InputError(f"--size: a film needs even numbers, not {width}x{height}: use {even}")
+
+
 def check_fps(fps: float, suffix: str) -> None:
     """A GIF stores whole hundredths of a second, and browsers slow down anything under two."""
     highest = HIGHEST_FPS[suffix]
@@ -162,20 +167,17 @@ def output_file(option: str, text: str, suffixes: Sequence[str]) -> Path:
 
 
 def _writable(option: str, text: str, path: Path) -> Path:
-    folder = path.resolve().parent
+    target = followed(path)
+    folder = target.parent
     if not folder.is_dir():
         raise InputError(f"{option} {text}: there is no folder {folder}; make it first")
     if path.is_dir():
         raise InputError(f"{option} {text}: this is a folder; give a file name")
     if path.exists() and not os.access(path, os.W_OK):
         raise InputError(f"{option} {text}: this file is write-protected; choose another name")
-    try:
-        # Only an attempt tells about read-only file systems, quotas and access lists.
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"{option} {text}: cannot write in {folder} ({reason})") from error
+    clear(folder, target.name)
+    # Only an attempt tells about read-only file systems, quotas, access lists, and names that are too long.
+    try_writing(path)
     return path
 
 

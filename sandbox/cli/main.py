@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 
 from core.errors import InputError, nearest
 from sandbox import __version__
-from sandbox.cli import arguments, verbs
+from sandbox.cli import arguments, streams, verbs
 from sandbox.cli import study as studies
 from sandbox.cli.arguments import Parser, argument
 from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
@@ -27,11 +27,17 @@ NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return the exit code."""
-    words = list(sys.argv[1:] if argv is None else argv)
+    with streams.prepared():
+        return _run(list(sys.argv[1:] if argv is None else argv))
+
+
+def _run(words: list[str]) -> int:
     try:
         options = parse(words)
         command: Callable[[argparse.Namespace], int] = options.run
-        return command(options)
+        code = command(options)
+        sys.stdout.flush()
+        return code
     except InputError as error:
         print(f"error: {arguments.one_line(str(error))}", file=sys.stderr)
         return USER_MISTAKE

@@ -159,6 +159,7 @@ def _output(
 
         film = arguments.output_file("--out", options.out, FILM_SUFFIXES)
         arguments.check_fps(fps, film.suffix.lower())
+        arguments.check_size(size, film.suffix.lower())
         environment.require_pygame_ce()
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])

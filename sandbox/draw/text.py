@@ -5,6 +5,7 @@ The font's digits all have one width, so a number that counts does not make its 
 
 from __future__ import annotations
 
+import io
 from collections import OrderedDict
 from functools import cache, lru_cache
 from pathlib import Path
@@ -21,6 +22,7 @@ TITLE = 34
 
 _FILES = {False: "SandboxSans-Regular.otf", True: "SandboxSans-SemiBold.otf"}
 _CACHE_SIZE = 512
+_FONTS = 64  # sizes that are kept, more than a window has at one scale
 FIRM = "\u00a0"  # a space at which no line breaks
 
 
@@ -37,10 +39,16 @@ def font_path(bold: bool = False) -> Path:
 
 
 @cache
+def _content(bold: bool) -> bytes:
+    return font_path(bold).read_bytes()
+
+
+@lru_cache(_FONTS)
 def _font(size: int, bold: bool) -> pygame.font.Font:
     if not pygame.font.get_init():
         pygame.font.init()
-    return pygame.font.Font(str(font_path(bold)), size)
+    # From memory, as a font keeps the file open that it is read from.
+    return pygame.font.Font(io.BytesIO(_content(bold)), size)
 
 
 @lru_cache(4 * _CACHE_SIZE)

@@ -11,13 +11,15 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from core.errors import InputError
 from sandbox.bars import bar_options
-from sandbox.files.table import SideBySide, Table, write_csv
+from sandbox.files.table import GrowingTable
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
 if TYPE_CHECKING:
     from sandbox.session.frame import Frame
+    from sandbox.session.history import History
     from sandbox.session.log import Log
     from sandbox.session.session import Session
 
@@ -100,16 +102,20 @@ def run(
 ) -> Outcome:
     """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
-    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th,
-    the table at the end. Ctrl-C is heard between two pieces of work, so that frames and rows always go together.
+    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th; the
+    table grows on the disk. Ctrl-C is heard between two pieces of work, so that frames and rows always go together. Where one
+    of the two cannot be written any more, or the work fails, the run ends, and a table holds what there was; a film that can
+    still be written is finished. Raises what had happened.
     """
     from tqdm import tqdm
 
-    film, table = (output.film, output.table) if output else (None, None)
+    film, path = (output.film, output.table) if output else (None, None)
+    table = GrowingTable(path, lambda: _histories(sessions)) if path else None
     draw = _drawer(output) if output and film else None
     writer = VideoWriter(film, output.size, output.fps) if output and film else None
     increments = 0
     interrupted = False
+    failed: InputError | None = None  # of the table
     try:
         with (
             writer or nullcontext(),
@@ -127,18 +133,25 @@ def run(
                         if writer and draw and output and increments % output.every == 0:
                             writer.write(draw([session.frame() for session in sessions]))
                         bar.update()
+                if table and increments:
+                    try:
+                        table.grow()
+                    except InputError as error:
+                        failed = error
+                        break
     except KeyboardInterrupt:
         interrupted = True
-    if table and increments:
-        write_csv(table, _table(sessions))
+    finally:
+        if table and increments and not failed:
+            table.finish()
+    if failed:
+        raise failed
     rows = sum(len(session.history) for session in sessions)
     return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
 
 
-def _table(sessions: Sequence[Session]) -> Table:
-    if len(sessions) == 1:
-        return sessions[0].history
-    return SideBySide([(session.packing, session.history) for session in sessions])
+def _histories(sessions: Sequence[Session]) -> list[tuple[str, History]]:
+    return [(session.packing, session.history) for session in sessions]
 
 
 @contextmanager

@@ -1,8 +1,8 @@
 """Frames to a film (.mp4), an animation (.gif) or a picture of the last frame (.png).
 
 Whatever happens, the file that stood at the path before stays until the new one is whole: frames
-go to a temporary name in the same folder, which is renamed at the end. Ctrl-C also ends in a whole
-file.
+go to a hidden name in the same folder, which is renamed at the end. Ctrl-C also ends in a whole
+file. What goes to a pipe or a device is made in the folder for temporary files, and copied.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ import subprocess
 import tempfile
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, BinaryIO, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core import files
 from core.errors import InputError
 from core.files import atomic_write
 from sandbox.interrupts import deferred
@@ -57,7 +58,7 @@ class VideoWriter:
 
     def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], fps: float) -> None:
         # Absolute, since ffmpeg would take "a:b.mp4" for a protocol and "-a.mp4" for an option.
-        self.path = Path(path).resolve()
+        self.path = files.followed(path)
         self.suffix = Path(path).suffix.lower()
         if self.suffix not in SUFFIXES:
             raise InputError(f"{path}: cannot write this kind of file; use {', '.join(SUFFIXES)}")
@@ -66,10 +67,12 @@ class VideoWriter:
         self.size = size
         self.fps = fps
         self.frames = 0
-        stem = f".{self.path.stem}.{os.getpid()}"
-        self._temporary = self.path.with_name(f"{stem}.part{self.suffix}")
-        self._lossless = self.path.with_name(f"{stem}.part.mkv")
-        self._palette = self.path.with_name(f"{stem}.palette.part.png")
+        special = files.is_special(self.path)
+        near = Path(tempfile.gettempdir(), self.path.name) if special else self.path
+        self._temporary = files.hidden(near, f"part{self.suffix}")
+        self._lossless = files.hidden(near, "part.mkv")
+        self._palette = files.hidden(near, "part.png")
+        self._claimed: list[BinaryIO] = []  # open as long as this is at work: see core.files
         self._encoder: Any = None
         self._last: Image | None = None
         if self.suffix != ".png":
@@ -131,10 +134,21 @@ class VideoWriter:
         target, options = (
             (self._temporary, _MP4) if self.suffix == ".mp4" else (self._lossless, _LOSSLESS)
         )
+        self._claim(target)
         # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead.
         return imageio.v2.get_writer(
             target, format="FFMPEG", mode="I", fps=self.fps, ffmpeg_log_level="quiet", **options
         )
+
+    def _claim(self, *paths: Path) -> None:
+        """Make files that ffmpeg will write, and say that somebody is at work on them."""
+        for path in paths:
+            self._claimed.append(path.open("xb"))
+            files.lock(self._claimed[-1].fileno())
+
+    def _release(self) -> None:
+        while self._claimed:
+            self._claimed.pop().close()
 
     def _close_encoder(self) -> None:
         encoder, self._encoder = self._encoder, None
@@ -153,10 +167,12 @@ class VideoWriter:
         found = _count_frames(self._temporary)
         if found != self.frames:
             raise OSError(f"{found} of {self.frames} frames arrived in the file")
-        self._temporary.replace(self.path)
+        self._release()  # Windows renames no open file
+        files.publish(self._temporary, self.path)
 
     def _make_gif(self) -> None:
         """One palette made from all frames: no flicker, and small differences between frames."""
+        self._claim(self._palette, self._temporary)
         _ffmpeg("-i", self._lossless, "-vf", "palettegen", "-update", "1", self._palette)
         _ffmpeg(
             *("-i", self._lossless, "-i", self._palette),
@@ -175,6 +191,7 @@ class VideoWriter:
         return InputError(f"cannot write {self.path}: {reason}{kept}")
 
     def _remove_temporaries(self) -> None:
+        self._release()
         for path in (self._temporary, self._lossless, self._palette):
             path.unlink(missing_ok=True)
 

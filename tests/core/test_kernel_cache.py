@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -159,3 +160,82 @@ def test_what_cannot_be_removed_stays(tmp_path: Path, monkeypatch: pytest.Monkey
     kernel_cache.prune(tmp_path)
     assert old.exists()
     assert link.is_symlink()
+
+
+KERNEL = """
+import numpy as np
+from core.jit import kernel
+
+@kernel
+def double(x):
+    return 2.0 * x
+
+print(double(21.0))
+"""
+
+
+def run_kernel(tmp_path: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """A fresh process that compiles one kernel, or takes it from where it is kept."""
+    (tmp_path / "one.py").write_text(KERNEL)
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    return subprocess.run(
+        [sys.executable, str(tmp_path / "one.py")],
+        env={**environment, "PYTHONPATH": str(REPOSITORY), **variables},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+
+
+def test_where_nothing_can_be_kept_kernels_run_all_the_same(tmp_path: Path) -> None:
+    """A file where the folder should be: not even root can write there. It is said in one line, once."""
+    (tmp_path / "cache").write_text("a file")
+    for variables in (
+        {"XDG_CACHE_HOME": str(tmp_path / "cache")},
+        {"NUMBA_CACHE_DIR": str(tmp_path / "cache" / "numba")},
+    ):
+        done = run_kernel(tmp_path, **variables)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout == "42.0\n"
+        assert len(done.stderr.splitlines()) == 1, done.stderr
+        assert "every start compiles it anew" in done.stderr
+    assert not list(tmp_path.rglob("*.nbi"))  # nor beside the source
+
+
+MOVED = b"cno_such_module\nThing\n."  # the pickle of a class that is gone
+DAMAGES: dict[str, Callable[[bytes], bytes]] = {
+    "empty": lambda whole: b"",
+    "half": lambda whole: whole[: len(whole) // 2],
+    "moved": lambda whole: MOVED,
+}
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder in which the kernel has been compiled and kept."""
+    folder = tmp_path_factory.mktemp("compiled")
+    assert run_kernel(folder, NUMBA_CACHE_DIR=str(folder / "kept")).stdout == "42.0\n"
+    return folder
+
+
+@pytest.mark.parametrize("suffix", [".nbi", ".nbc"])
+@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES.keys())
+def test_what_cannot_be_read_is_missing(
+    compiled: Path, suffix: str, damage: Callable[[bytes], bytes]
+) -> None:
+    """It is compiled anew, and kept again."""
+    (path,) = (compiled / "kept").rglob(f"*{suffix}")
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
+    done = run_kernel(compiled, NUMBA_CACHE_DIR=str(compiled / "kept"))
+    assert (done.returncode, done.stdout, done.stderr) == (0, "42.0\n", "")
+    assert len(path.read_bytes()) > 0.9 * len(whole)
+
+
+def test_what_can_neither_be_read_nor_written_is_left_alone(compiled: Path) -> None:
+    """Where the kernel is kept there are folders of that name."""
+    for path in (compiled / "kept").rglob("*.nb?"):
+        path.unlink()
+        path.mkdir()
+    done = run_kernel(compiled, NUMBA_CACHE_DIR=str(compiled / "kept"))
+    assert (done.returncode, done.stdout, done.stderr) == (0, "42.0\n", "")

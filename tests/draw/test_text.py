@@ -91,3 +91,18 @@ def test_page_scale_fits_the_window() -> None:
     assert page_scale(3.0, (480, 360)) == 1.0
     assert page_scale(1.0, (3840, 2160)) == pytest.approx(1.3)
     assert page_scale(1.0, (100, 100)) == SMALL / BODY
+
+
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="where a system tells")
+def test_no_font_keeps_a_file_open() -> None:
+    """However many sizes of letters there have been; and the pictures are those of a font from the file."""
+    import pygame.font
+    import pygame.image
+
+    opened = len(list(Path("/proc/self/fd").iterdir()))
+    for size in range(20, 120):
+        Type(size / BODY).render("Größe 12", BODY, 0xFFFFFF, bold=size % 2 == 0)
+    assert len(list(Path("/proc/self/fd").iterdir())) == opened
+    plain = pygame.font.Font(str(font_path()), 24).render("ν = −0.8", True, (255, 255, 255))
+    mine = Type(1.5).render("ν = −0.8", BODY, 0xFFFFFF)
+    assert pygame.image.tobytes(plain, "RGBA") == pygame.image.tobytes(mine, "RGBA")

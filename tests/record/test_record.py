@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,11 +14,20 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from sandbox.files.table import GrowingTable
 from sandbox.record import record
 from sandbox.record.record import Outcome, Output
+from sandbox.record.video import VideoWriter
 from sandbox.session.session import Session
 
 SIZE = (64, 48)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A row of the table."""
+
+    increment: int
 
 
 class Cardboard:
@@ -25,7 +35,9 @@ class Cardboard:
 
     def __init__(self) -> None:
         self.scene = SimpleNamespace(name="cardboard")
+        self.packing = "cardboard"
         self.history = self
+        self.lines = [Line(0)]
         self.slices_done = 0
         self.asked_for_frames = 0
         self.idle_after: int | None = None
@@ -60,6 +72,10 @@ class Cardboard:
 
     def rows(self) -> Iterator[tuple[int]]:
         return ((i,) for i in range(len(self)))
+
+    def __getitem__(self, index: int) -> Line:
+        self.lines += [Line(i) for i in range(len(self.lines), index + 1)]
+        return self.lines[index]
 
     def __len__(self) -> int:
         return self.increments + 1
@@ -125,15 +141,49 @@ def test_ctrl_c_before_the_first_increment_writes_nothing(
     assert not list(tmp_path.iterdir())
 
 
-def test_an_error_leaves_no_files(tmp_path: Path, session: Cardboard) -> None:
+def test_an_error_leaves_the_table(tmp_path: Path, session: Cardboard) -> None:
+    """No film, whose frames may be wrong; but what was known before the error."""
+
     def fail(increment: int) -> None:
-        if increment == 2:
+        if increment == 3:
             raise InputError("the packing collapsed")
 
     session.on_increment = fail
     with pytest.raises(InputError, match="collapsed"):
         run(session, 9, tmp_path / "film.mp4", tmp_path / "run.csv")
-    assert not list(tmp_path.iterdir())
+    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+    assert (tmp_path / "run.csv").read_text().split()[:4] == ["increment", "0", "1", "2"]
+
+
+def test_a_film_that_fails_leaves_the_table_whole(
+    tmp_path: Path, session: Cardboard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = VideoWriter.write
+
+    def fail(writer: VideoWriter, image: Any) -> None:
+        if writer.frames == 3:
+            raise InputError("no room for the film")
+        write(writer, image)
+
+    monkeypatch.setattr(VideoWriter, "write", fail)
+    with pytest.raises(InputError, match="no room for the film"):
+        run(session, 9, tmp_path / "film.mp4", tmp_path / "run.csv")
+    assert [path.name for path in tmp_path.iterdir()] == ["run.csv"]
+    assert (tmp_path / "run.csv").read_text().split() == ["increment", "0", "1", "2", "3", "4"]
+
+
+def test_a_table_that_fails_leaves_the_film_whole(
+    tmp_path: Path, session: Cardboard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(table: GrowingTable) -> None:
+        if session.increments == 3:
+            raise InputError("no room for the table")
+
+    monkeypatch.setattr(GrowingTable, "grow", fail)
+    with pytest.raises(InputError, match="no room for the table"):
+        run(session, 9, tmp_path / "film.gif", tmp_path / "run.csv")
+    assert [path.name for path in tmp_path.iterdir()] == ["film.gif"]
+    assert len(imageio.v2.mimread(tmp_path / "film.gif")) == 3
 
 
 def test_the_bar_of_the_build_never_goes_back(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from core import files
 from core.errors import InputError
 from sandbox.record import video
 from sandbox.record.video import VideoWriter
@@ -157,6 +159,48 @@ def test_a_link_is_followed(tmp_path: Path) -> None:
     assert len(frames_of(target)) == 1
 
 
+@pytest.mark.parametrize("suffix", video.SUFFIXES)
+def test_the_longest_names_that_there_are(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / ("ν" * ((255 - len(suffix)) // 2) + suffix)
+    with VideoWriter(path, (WIDTH, HEIGHT), 30) as writer:
+        writer.write(image())
+    assert list(tmp_path.iterdir()) == [path]
+    assert path.stat().st_size > 100
+
+
+@pytest.mark.parametrize("suffix", [".gif", ".png"])
+def test_animations_and_pictures_have_any_size(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"odd{suffix}"
+    picture = image()[:-1, :-1]
+    with VideoWriter(path, (WIDTH - 1, HEIGHT - 1), 30) as writer:
+        writer.write(np.ascontiguousarray(picture))
+    (frame,) = frames_of(path)
+    np.testing.assert_array_equal(frame, picture)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices of POSIX")
+@pytest.mark.parametrize("suffix", video.SUFFIXES)
+def test_pipes_and_devices_are_written_to(tmp_path: Path, suffix: str) -> None:
+    """A pipe, and a link to a device, are still that afterwards, and have got all of it."""
+    with VideoWriter(tmp_path / f"plain{suffix}", (WIDTH, HEIGHT), 30) as writer:
+        writer.write(image())
+    pipe, link = tmp_path / f"pipe{suffix}", tmp_path / f"link{suffix}"
+    os.mkfifo(pipe)
+    link.symlink_to(os.devnull)
+    got: list[bytes] = []
+    reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()), daemon=True)
+    reader.start()
+    for path in (link, pipe):
+        with VideoWriter(path, (WIDTH, HEIGHT), 30) as writer:
+            writer.write(image())
+    reader.join(60)
+    assert got == [(tmp_path / f"plain{suffix}").read_bytes()]
+    assert pipe.is_fifo()
+    assert link.is_symlink()
+    assert Path(os.devnull).is_char_device()
+    assert len(list(tmp_path.iterdir())) == 3
+
+
 def test_mistakes_are_found_at_once(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"film\.avi.*\.mp4"):
         VideoWriter(tmp_path / "film.avi", (WIDTH, HEIGHT), 30)
@@ -276,3 +320,9 @@ def test_a_killed_program_leaves_the_earlier_file(tmp_path: Path) -> None:
     )
     assert done.returncode == -signal.SIGKILL
     assert path.read_bytes() == b"earlier"
+    files.SETTLED, before = 0.0, files.SETTLED
+    try:
+        files.clear(tmp_path, path.name)
+    finally:
+        files.SETTLED = before
+    assert list(tmp_path.iterdir()) == [path]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from core.files import atomic_write
+from core.files import atomic_write, clear
 from sandbox import __version__
 
 LIBRARIES = ("numpy", "numba", "pymunk", "matplotlib")
@@ -44,6 +44,8 @@ def prepare_folder(text: str, inside: str = "runs") -> Path:
         trial = folder / inside / f".trial-{os.getpid()}"
         trial.write_bytes(b"")
         trial.unlink()
+        clear(folder)
+        clear(folder / inside)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(f"--out {text}: cannot write there ({reason})") from error
