@@ -182,7 +182,9 @@ def _session(options: argparse.Namespace) -> Session:
             if value is not None:
                 raise InputError(f"--{name}: a scene file brings its own; leave this out")
         if options.set:
-            raise InputError("--set: a scene file brings its own settings; change them in the window")
+            raise InputError(
+                "--set: a scene file brings its own settings; change them in the window"
+            )
         from sandbox.files.scene_file import read_scene
 
         return Session.from_file(read_scene(options.scene))

@@ -129,7 +129,10 @@ def _array(content: bytes, name: str) -> NDArray[Any]:
     shape, fortran, kind = read_header(stream)
     if kind.hasobject or kind.kind not in "biufU":
         raise InputError(f"array {name[:80]!r} holds no plain numbers")
-    if min(shape, default=0) < 0 or math.prod(shape) * kind.itemsize != len(content) - stream.tell():
+    if (
+        min(shape, default=0) < 0
+        or math.prod(shape) * kind.itemsize != len(content) - stream.tell()
+    ):
         raise InputError(f"array {name[:80]!r} has not the size that it says")
     if not kind.itemsize:
         raise InputError(f"array {name[:80]!r} holds nothing")

@@ -80,7 +80,9 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     ):
         raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
     if ("start" in head) == (version == VERSION):
-        raise InputError(f"{path}: line 1: a log has a start if it began with a file, and only then")
+        raise InputError(
+            f"{path}: line 1: a log has a start if it began with a file, and only then"
+        )
     if len(entries) < 2 or "end" not in last:
         raise InputError(
             f"{path}: the log is truncated (its last line does not say where the run ended)"

@@ -55,9 +55,17 @@ def parse_pair(name: str, text: bytes, grains_called: Callable[[str], bytes]) ->
         )
         places, walls = places_of(head.get("bodies", [])), walls_of(head.get("walls", []))
         _, arrays = unpack(data)
-        memory = [arrays.get(name) for name in ("spin", "contact_keys", "contact_slips")]
         grains = Packing.of_arrays(arrays, head["grains"])
-        state = check_state(scene, State(settings, places, walls, grains, *memory))
+        state = State(
+            settings,
+            places,
+            walls,
+            grains,
+            spin=arrays.get("spin"),
+            contact_keys=arrays.get("contact_keys"),
+            contact_slips=arrays.get("contact_slips"),
+        )
+        state = check_state(scene, state)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
     return SceneFile(name, scene.name, packing, seed, settings, state)

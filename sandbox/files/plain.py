@@ -1,7 +1,7 @@
 """Dataclasses as plain data and arrays, and back by their annotations: what goes into a file, and what comes out of one.
 
-Arrays are put aside under the path of their field, and so is what has a ``Form`` of its own. What comes back has the types that the
-annotations say, or is refused; whether its numbers make sense, somebody else must ask.
+Arrays are put aside under the path of their field, and so is what has a ``Form`` of its own. What comes back has the types that
+the annotations say, or is refused; whether its numbers make sense, somebody else must ask.
 """
 
 from __future__ import annotations
@@ -174,7 +174,8 @@ def _text(data: Any, path: str, depth: int = 0) -> str:
     try:
         for _, name, spec, turn in string.Formatter().parse(template):
             if name is not None:
-                _known(name in values and not turn and _SPEC.fullmatch(spec or ""), data, path)
+                plain = not turn and _SPEC.fullmatch(spec or "") is not None
+                _known(name in values and plain, data, path)
         return Text(template, **values)
     except (ValueError, TypeError):
         raise InputError(f"{path} is missing, or not what it should be") from None

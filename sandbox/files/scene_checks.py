@@ -60,9 +60,7 @@ def check_grains(grains: Packing) -> None:
         return
     radius, stiffness = grains.rest_radius, grains.contact_stiffness
     if np.any((radius < RADII[0]) | (radius > RADII[1])):
-        raise InputError(
-            f"rest radii of grains must lie between {RADII[0]:g} and {RADII[1]:g} R"
-        )
+        raise InputError(f"rest radii of grains must lie between {RADII[0]:g} and {RADII[1]:g} R")
     if np.any((stiffness < STIFFNESSES[0]) | (stiffness > STIFFNESSES[1])):
         raise InputError(
             f"the stiffness of contacts must lie between {STIFFNESSES[0]:g} and {STIFFNESSES[1]:g} k"
@@ -152,7 +150,7 @@ def _check_friction(state: State) -> None:
     spin, keys, slips = memory
     if spin is None or keys is None or slips is None:
         raise InputError("the frictional memory of the grains is not whole")
-    if (spin.dtype, slips.dtype, keys.dtype) != (np.float64, np.float64, np.int64):
+    if [spin.dtype, slips.dtype, keys.dtype] != [np.dtype(k) for k in (float, float, np.int64)]:
         raise InputError("the frictional memory of the grains has arrays of another kind")
     if spin.shape != (len(state.grains),) or keys.ndim != 1:
         raise InputError("the frictional memory is not that of these grains")

@@ -1,8 +1,8 @@
 """What a person has made, as one file to keep and to share. Opened, it goes on to the last bit as if it had never been closed.
 
 It is a zip with readable texts: ``scene.json`` says what was built, ``state.json`` how it stood, and arrays beside them have the
-grains and the rows of the history. All are data; nothing in them is run. What is read may come from anyone: all of it is looked at
-before anything is built, and what does not fit is one line of InputError. The name of the file means nothing.
+grains and the rows of the history. All are data; nothing in them is run. What is read may come from anyone: all of it is looked
+at before anything is built, and what does not fit is one line of InputError. The name of the file means nothing.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any, get_type_hints
 
-import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
@@ -94,9 +93,7 @@ def parse_scene(name: str, content: bytes) -> SceneFile:
             raise InputError(f"it has a part {unknown[0][:80]!r}, which nobody knows")
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    return SceneFile(
-        name, scene.name, packing, seed, built, states[STATE], states.get(BEFORE_EDIT)
-    )
+    return SceneFile(name, scene.name, packing, seed, built, states[STATE], states.get(BEFORE_EDIT))
 
 
 def _head(head: object) -> dict[str, Any]:
@@ -129,7 +126,11 @@ def _history_of(columns: Mapping[str, NDArray[Any]]) -> History:
     lists = []
     for field in known:
         column = columns.get(field.name)
-        if column is None or column.ndim != 1 or column.dtype.kind not in letters[kinds[field.name]]:
+        if (
+            column is None
+            or column.ndim != 1
+            or column.dtype.kind not in letters[kinds[field.name]]
+        ):
             raise InputError(f"column {field.name} of the rows is missing, or of another kind")
         lists.append(column.tolist())
     if unknown := set(columns) - set(kinds):

@@ -72,7 +72,9 @@ class State:
     spin: Floats | None = None  # (N,) [rad]; None if there was no friction
     contact_keys: NDArray[np.int64] | None = None  # (K,) what its contacts remember
     contact_slips: Floats | None = None  # (K,) [R]
-    going_on: GoingOn | None = None  # None: it begins anew, with the grains relaxed where they stand
+    going_on: GoingOn | None = (
+        None  # None: it begins anew, with the grains relaxed where they stand
+    )
 
     @classmethod
     def of(cls, kept: Checkpoint) -> State:
@@ -336,9 +338,7 @@ def _check_place(setup: Setup, body: RigidBody, place: Place) -> None:
         allowed &= place.axis is None or abs(math.hypot(*place.axis) - 1.0) < HAIR
         if not follows:
             allowed &= math.dist(place.home, body.home) < HAIR and (
-                place.axis is None
-                or body.axis is None
-                or math.dist(place.axis, body.axis) < HAIR
+                place.axis is None or body.axis is None or math.dist(place.axis, body.axis) < HAIR
             )
     if not allowed or abs(place.angle - body.angle) > HAIR:
         raise InputError(f"body {body.name!r} cannot be where the file has it")

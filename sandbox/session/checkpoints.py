@@ -37,7 +37,9 @@ class Checkpoint:
     history: History  # of which the first ``length`` rows belong to it
     length: int
     settings: Values
-    before_edit: Checkpoint | None = None  # while an edit is not relaxed yet: to go back if it was too tight
+    before_edit: Checkpoint | None = (
+        None  # while an edit is not relaxed yet: to go back if it was too tight
+    )
 
     @property
     def increment(self) -> int:

@@ -179,7 +179,7 @@ class Session:
                 self._go_to(self._past.redo(self._moment()))
 
     def _reset(self) -> None:
-        """The start, with the settings as they are now: what was built, or what a file had with nothing held and the script off."""
+        """The start, with the settings as they are now: as it was built, or as a file had it, nothing held and the script off."""
         start = self._start
         assert start is not None
         if start.kept is not None:
@@ -348,7 +348,13 @@ class Session:
         asked = start.asked
         worth = bool(self._commands) or asked.file is not None
         return Made(
-            asked.scene.name, asked.packing, asked.seed, asked.settings, run.settled, asked.file, worth
+            asked.scene.name,
+            asked.packing,
+            asked.seed,
+            asked.settings,
+            run.settled,
+            asked.file,
+            worth,
         )
 
     def checks(self) -> list[Check]:

@@ -330,7 +330,9 @@ class Panes:
             self._close_autosave(clean=False)
             if self.autosave is None:
                 raise
-            raise InputError(f"{error}; what was there is kept, the menu offers it next time") from error
+            raise InputError(
+                f"{error}; what was there is kept, the menu offers it next time"
+            ) from error
         self._close_autosave(clean)
         return ended
 
@@ -343,7 +345,9 @@ class Panes:
         stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
         if log is not None and wanted and main is not None:
             if not ended or main.session.busy:
-                raise InputError(f"{os.fspath(log)}: not written, the solver did not come to an end")
+                raise InputError(
+                    f"{os.fspath(log)}: not written, the solver did not come to an end"
+                )
             try:
                 write_log(log, main.session.log())
             except OSError as error:
