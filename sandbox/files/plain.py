@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from scenes.text import Text
 
-LONGEST = 2000  # letters of a text
+LONGEST = 100_000  # letters of a text
 DEEPEST = 4  # texts within texts
 _NOT_FINITE = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
 _SPEC = re.compile(r"[+]?(\.\d)?[defgn%]?")

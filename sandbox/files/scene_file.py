@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import Packing
+from core.relaxation import Report
 from sandbox.files.archive import LARGEST, ZIP, first_text, pack, unpack
 from sandbox.files.older_pairs import is_pair, parse_pair, scene_of_pair
 from sandbox.files.plain import Arrays, Form, Plain
@@ -121,7 +122,7 @@ def _rows_of(history: History) -> Mapping[str, NDArray[Any]]:
 def _history_of(columns: Mapping[str, NDArray[Any]]) -> History:
     """A history from its columns. What an older program has not measured is as it is by itself."""
     kinds = get_type_hints(Row)
-    letters = {int: "i", float: "fi", str: "U"}  # what is a number may be a whole one in all rows
+    letters = {bool: "b", int: "i", float: "fi", str: "U"}  # a number may be whole in all rows
     known = [f for f in fields(Row) if f.name in columns or f.default is MISSING]
     lists = []
     for field in known:
@@ -150,7 +151,8 @@ _PLAIN = Plain(
         Packing: Form(Packing.arrays, lambda arrays: Packing.of_arrays(arrays, "its grains")),
         History: Form(_rows_of, _history_of),
     },
-    frozenset({"hand_force", "energy", "start_energy", "residual", "mean_contact_force"}),
+    # Nothing was pulled at, or the numbers blew up.
+    frozenset({"hand_force", *(field.name for field in fields(Report))}),
 )
 
 

@@ -56,7 +56,8 @@ def run(
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``log``: where the log of the last
-    scene started is written at the end. Raises InputError without a display and for what does not exist.
+    scene started is written at the end, also where SIGTERM or SIGHUP asks for one: the autosave stays then, and the code is 128 and
+    the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
     # Before there is a window: where nobody else listens, SDL makes of a request to end a click on the close button.
