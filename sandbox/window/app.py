@@ -56,7 +56,7 @@ def run(
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``log``: where the log of the last
-    scene started is written at the end, also where SIGTERM or SIGHUP asks for one: the autosave stays then, and the code is 128 and
+    scene started is written at the end. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the code is 128 and
     the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
