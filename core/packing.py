@@ -10,12 +10,13 @@ from __future__ import annotations
 import hashlib
 import os
 import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,9 +39,11 @@ UNREADABLE = (
     MemoryError,
     OSError,
     RuntimeError,
+    SyntaxError,
     TypeError,
     ValueError,
     struct.error,
+    tokenize.TokenError,
     zipfile.BadZipFile,
     zlib.error,
 )
@@ -229,19 +232,12 @@ class Packing:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write an NPZ (plain arrays, no pickle) under a temporary name, then rename. Raises OSError as the system does."""
         with atomic_write(path) as file:
-            self.write(file)
+            np.savez_compressed(file, allow_pickle=False, **self.arrays())
 
-    def write(
-        self,
-        file: BinaryIO,
-        extra: Mapping[str, NDArray[np.generic]] | None = None,
-        *,
-        compressed: bool = True,
-    ) -> None:
-        """The NPZ of ``save``, with ``extra`` arrays beside the packing's own, which ``load`` passes over."""
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """All there is to be written."""
         box = self.box
-        arrays: dict[str, NDArray[np.generic]] = {
-            **(extra or {}),
+        return {
             "format": np.array(FORMAT),
             "version": np.array(FORMAT_VERSION),
             "state": self.state,
@@ -253,19 +249,13 @@ class Packing:
                 [] if box is None else [box.width, box.height, box.shift], dtype=np.float64
             ),
         }
-        write = np.savez_compressed if compressed else np.savez
-        write(file, allow_pickle=False, **arrays)
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str], file: BinaryIO | None = None) -> Packing:
-        """Read what ``save`` wrote. Raises InputError for a missing, malformed, hostile or newer file; runs no code from it.
-
-        With ``file``, what was read already: ``path`` is then only its name.
-        """
+    def load(cls, path: str | os.PathLike[str]) -> Packing:
+        """Read what ``save`` wrote. Raises InputError for a missing, malformed, hostile or newer file; runs no code from it."""
         path = Path(path)
-        source = path if file is None else file
         try:
-            with zipfile.ZipFile(source) as archive:
+            with zipfile.ZipFile(path) as archive:
                 methods = {info.compress_type for info in archive.infolist()}
                 if not methods <= {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
                     raise InputError(f"{path}: not a packing file of this program")
@@ -274,27 +264,36 @@ class Packing:
                     raise InputError(
                         f"{path}: would unpack to {unpacked} bytes, more than any packing needs; not opened"
                     )
-            if file is not None:
-                file.seek(0)
-            with np.load(source, allow_pickle=False) as data:
-                if str(data["format"]) != FORMAT:
-                    raise InputError(f"{path}: not a packing file of this program")
-                version = int(data["version"])
-                if version != FORMAT_VERSION:
-                    raise InputError(
-                        f"{path}: format version {version}, this program reads {FORMAT_VERSION}; update the program"
-                    )
-                packing = cls.__new__(cls)
-                packing.state = _floats(data["state"], path)
-                packing.rest_radius = _floats(data["rest_radius"], path)
-                packing.poisson_ratio = _floats(data["poisson_ratio"], path)
-                packing.contact_stiffness = _floats(data["contact_stiffness"], path)
-                packing.label = _whole_numbers(data["label"], path)
-                box = _floats(data["box"], path)
+            with np.load(path, allow_pickle=False) as data:
+                return cls.of_arrays(data, str(path))
         except InputError:
             raise
         except FileNotFoundError:
             raise InputError(f"{path}: no such file") from None
+        except UNREADABLE as error:
+            reason = " ".join(str(error).split())
+            raise InputError(f"{path}: not a readable packing file ({reason})") from None
+
+    @classmethod
+    def of_arrays(cls, data: Mapping[str, NDArray[Any]], path: str) -> Packing:
+        """The packing of ``arrays``; ``path`` is what messages call it. Raises InputError as ``load`` does."""
+        try:
+            if str(data["format"]) != FORMAT:
+                raise InputError(f"{path}: not a packing file of this program")
+            version = int(data["version"])
+            if version != FORMAT_VERSION:
+                raise InputError(
+                    f"{path}: format version {version}, this program reads {FORMAT_VERSION}; update the program"
+                )
+            packing = cls.__new__(cls)
+            packing.state = _floats(data["state"], path)
+            packing.rest_radius = _floats(data["rest_radius"], path)
+            packing.poisson_ratio = _floats(data["poisson_ratio"], path)
+            packing.contact_stiffness = _floats(data["contact_stiffness"], path)
+            packing.label = _whole_numbers(data["label"], path)
+            box = _floats(data["box"], path)
+        except InputError:
+            raise
         except UNREADABLE as error:
             reason = " ".join(str(error).split())
             raise InputError(f"{path}: not a readable packing file ({reason})") from None
@@ -313,7 +312,7 @@ class Packing:
         return packing
 
 
-def _whole_numbers(array: NDArray[np.generic], path: Path) -> NDArray[np.int64]:
+def _whole_numbers(array: NDArray[Any], path: str) -> NDArray[np.int64]:
     if array.dtype.kind not in "iu":
         raise InputError(
             f"{path}: malformed packing file (labels are {array.dtype}, not whole numbers)"
@@ -321,7 +320,7 @@ def _whole_numbers(array: NDArray[np.generic], path: Path) -> NDArray[np.int64]:
     return np.array(array, dtype=np.int64)
 
 
-def _floats(array: NDArray[np.generic], path: Path) -> Floats:
+def _floats(array: NDArray[Any], path: str) -> Floats:
     if array.dtype != np.float64:
         raise InputError(f"{path}: malformed packing file (an array is {array.dtype}, not float64)")
     return np.ascontiguousarray(array)

@@ -1,4 +1,4 @@
-"""Ctrl-C at a moment when it does no harm.
+"""Ctrl-C, and a request to end, at a moment when it does no harm.
 
 A KeyboardInterrupt in the middle of a frame that is being piped to the encoder, or of an increment
 that is being booked, leaves half of something. ``deferred`` puts it off to the end of a short
@@ -65,6 +65,27 @@ def stop_like_ctrl_c() -> Iterator[None]:
         signal.signal(number, signal.default_int_handler)
     try:
         yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)
+
+
+@contextmanager
+def requests_to_end() -> Iterator[list[int]]:
+    """SIGTERM and SIGHUP that come within the block are put into a list, for a program that looks at it and ends by itself."""
+    came: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield came
+        return
+    earlier = {
+        number: handler
+        for number in _STOP_SIGNALS
+        if number != signal.SIGINT and (handler := signal.getsignal(number)) == signal.SIG_DFL
+    }
+    for number in earlier:
+        signal.signal(number, lambda number, _frame: came.append(number))
+    try:
+        yield came
     finally:
         for number, handler in earlier.items():
             signal.signal(number, handler)

@@ -104,7 +104,7 @@ def _add_play(command: Command) -> None:
         "scene",
         nargs="?",
         metavar="SCENE",
-        help="name of a scene, or a scene file FILE.toml; without it: a menu",
+        help="name of a scene, or a scene file FILE.scene; without it: a menu",
     )
     _add_scene_options(play)
     _add_compare(play)
@@ -126,7 +126,7 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "scene",
         metavar="SCENE",
-        help="one of the names that `list` prints, or a scene file FILE.toml",
+        help="one of the names that `list` prints, or a scene file FILE.scene",
     )
     record.add_argument(
         "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"

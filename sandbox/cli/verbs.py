@@ -6,6 +6,7 @@ Only light modules are imported at the top, as in ``cli``; heavy ones where a co
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -108,7 +109,11 @@ def replay(options: argparse.Namespace) -> int:
         return INTERRUPTED
     same = session.state_hash() == log.hash
     print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
-    return OK if same else DIFFERENT
+    refused, why = session.refusals
+    if refused:
+        noun = "command" if refused == 1 else "commands"
+        print(f"{refused} {noun} of the log could not be carried out: {arguments.one_line(why)}")
+    return OK if same and not refused else DIFFERENT
 
 
 def bench(options: argparse.Namespace) -> int:
@@ -173,12 +178,14 @@ def _session(options: argparse.Namespace) -> Session:
     """The session that the options describe, checked but not built."""
     from sandbox.session.session import Session
 
-    if options.scene.lower().endswith(".toml"):
+    if _is_file(options.scene):
         for name, value in (("packing", options.packing), ("seed", options.seed)):
             if value is not None:
                 raise InputError(f"--{name}: a scene file brings its own; leave this out")
         if options.set:
-            raise InputError("--set: a scene file brings its own settings; write them there")
+            raise InputError(
+                "--set: a scene file brings its own settings; change them in the window"
+            )
         from sandbox.files.scene_file import read_scene
 
         return Session.from_file(read_scene(options.scene))
@@ -194,13 +201,23 @@ def _sessions(options: argparse.Namespace) -> list[Session]:
         raise InputError("--packing and --compare: give one of them")
     from sandbox.session.session import Session
 
-    options.packing = None if options.scene.lower().endswith(".toml") else options.compare[0]
+    options.packing = None if _is_file(options.scene) else options.compare[0]
     first = _session(options)
     kinds = [first.scene.check_packing(kind) for kind in options.compare]
     if first.file is not None:
         return [Session.from_file(first.file.of_kind(kind)) for kind in kinds]
     name, seed, settings = first.scene.name, first.seed, first.settings
     return [Session(name, kind, seed, settings) for kind in kinds]
+
+
+def _is_file(scene: str) -> bool:
+    """A scene file, whatever it is called, and not the name of a scene."""
+    from sandbox.files.scene_file import SUFFIXES
+    from scenes import registry
+
+    if scene in registry.names():
+        return False
+    return scene.lower().endswith(SUFFIXES) or (os.sep in scene) or Path(scene).is_file()
 
 
 def _packing(options: argparse.Namespace) -> str:

@@ -20,14 +20,15 @@ from filelock import FileLock
 from platformdirs import user_data_path
 
 from core.errors import InputError
-from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.files.scene_file import SUFFIX, read_scene, write_scene
 from sandbox.session.beginning import Made, SceneFile
 
 log = logging.getLogger(__name__)
 
 EVERY = 20.0  # [s]
 PATIENCE = 2.0  # with the writing thread at the end [s]
-_NAME = re.compile(r"autosave-\d{1,10}-[0-9a-f]{8}\.toml")
+ASIDE = "unreadable"  # folder for those that nobody could read, beside the others
+_NAME = re.compile(r"autosave-\d{1,10}-[0-9a-f]{8}\.(scene|toml)")
 
 
 def folder() -> Path:
@@ -58,11 +59,27 @@ class Leftover:
         _remove(self.path)
 
 
-def find(where: Path | None = None) -> tuple[Leftover, ...]:
-    """What crashed programs have left, the latest first. What nobody can read is taken away."""
+@dataclass(frozen=True)
+class SetAside:
+    """An autosave that this program cannot read: of a newer one, of a scene that is gone, damaged, forbidden."""
+
+    path: Path  # where it lies now
+    why: str
+
+
+@dataclass(frozen=True)
+class Found:
+    """What programs that are gone have left, the latest first, and what of it could not be read."""
+
+    leftovers: tuple[Leftover, ...] = ()
+    set_aside: tuple[SetAside, ...] = ()
+
+
+def find(where: Path | None = None) -> Found:
+    """What crashed programs have left. What cannot be read is put into a folder of its own, for whoever can."""
     where = where or folder()
-    found, useless = [], []
-    for path in sorted(where.glob("autosave-*.toml")) if where.is_dir() else ():
+    found, aside = [], []
+    for path in sorted(where.glob("autosave-*")) if where.is_dir() else ():
         if not _NAME.fullmatch(path.name):
             continue
         # A lock that somebody has is a Timeout, which is an OSError too.
@@ -71,10 +88,10 @@ def find(where: Path | None = None) -> tuple[Leftover, ...]:
                 found.append(Leftover(path, path.stat().st_mtime, read_scene(path)))
             except InputError as error:
                 log.warning("an autosave could not be read: %s", error)
-                useless.append(path)
-    for path in useless:
-        _remove(path)
-    return tuple(sorted(found, key=lambda one: -one.saved))
+                why = str(error).removeprefix(f"{path}: ")
+                aside.append(SetAside(_put_aside(path), why))
+                path.with_suffix(".lock").unlink(missing_ok=True)
+    return Found(tuple(sorted(found, key=lambda one: -one.saved)), tuple(aside))
 
 
 class Autosave:
@@ -85,13 +102,12 @@ class Autosave:
         where = where or folder()
         where.mkdir(parents=True, exist_ok=True)
         # Numbers of processes come again, and in a container soon; the rest of the name does not.
-        self.path = where / f"autosave-{os.getpid()}-{secrets.token_hex(4)}.toml"
+        self.path = where / f"autosave-{os.getpid()}-{secrets.token_hex(4)}{SUFFIX}"
         self._lock = FileLock(self.path.with_suffix(".lock"), timeout=0)
         self._lock.acquire()
         self._every = every
         self._newest: Made | None = None
         self._written: Made | None = None
-        self._count = 0
         self._instead_of: list[Leftover] = []
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="autosave", daemon=True)
@@ -102,11 +118,11 @@ class Autosave:
         if made is None or not made.worth_keeping:
             return
         # Where nothing has happened the state is the same object.
-        if self._newest is None or made.state is not self._newest.state:
+        if self._newest is None or made.kept.engine is not self._newest.kept.engine:
             self._newest = made
 
     def adopt(self, leftover: Leftover) -> None:
-        """A person goes on with ``leftover``: it is taken away once the own autosave holds it."""
+        """A person goes on with ``leftover``: it is taken away once it runs, and the own autosave holds it."""
         self._instead_of.append(leftover)
 
     def close(self, clean: bool = True) -> None:
@@ -118,8 +134,7 @@ class Autosave:
                 self.write()
             self._lock.release()
             return
-        for leftover in self._instead_of:
-            leftover.remove()
+        self._remove_adopted(self._newest)
         self._lock.release()
         _remove(self.path)
 
@@ -135,14 +150,17 @@ class Autosave:
         newest = self._newest
         if newest is None or newest is self._written:
             return False
-        # Two names for the grains in turn: until the text is replaced, it has the grains that it names.
-        self._count += 1
-        name = f"{self.path.stem}.{self._count % 2}.npz"
-        write_scene(self.path, newest, name, lasting=False)
+        write_scene(self.path, newest, lasting=False)
         self._written = newest
-        while self._instead_of:
-            self._instead_of.pop().remove()
+        self._remove_adopted(newest)
         return True
+
+    def _remove_adopted(self, newest: Made | None) -> None:
+        """Those that ``newest`` has gone on from. One that could not be built is still there next time."""
+        for leftover in [*self._instead_of]:
+            if newest is not None and newest.file is leftover.file:
+                leftover.remove()
+                self._instead_of.remove(leftover)
 
 
 def begin(where: Path | None = None) -> Autosave | None:
@@ -154,8 +172,27 @@ def begin(where: Path | None = None) -> Autosave | None:
         return None
 
 
+def _parts(path: Path) -> list[Path]:
+    """An autosave and, of an older program, what belongs to it."""
+    return [path, path.with_name(f"{path.stem}.0.npz"), path.with_name(f"{path.stem}.1.npz")]
+
+
+def _put_aside(path: Path) -> Path:
+    """Move an autosave out of the way; returns where it lies now."""
+    place = path.parent / ASIDE
+    try:
+        place.mkdir(exist_ok=True)
+        for part in reversed(_parts(path)):
+            if part.exists():
+                part.rename(place / part.name)
+    except OSError as error:
+        log.warning("an autosave could not be set aside: %s", error)
+        return path
+    return place / path.name
+
+
 def _remove(path: Path) -> None:
     """Take an autosave away, all its files."""
-    for name in (path.name, f"{path.stem}.0.npz", f"{path.stem}.1.npz", f"{path.stem}.lock"):
+    for part in (*_parts(path), path.with_suffix(".lock")):
         with contextlib.suppress(OSError):
-            path.with_name(name).unlink(missing_ok=True)
+            part.unlink(missing_ok=True)

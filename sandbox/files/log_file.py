@@ -14,14 +14,18 @@ from typing import Any, TypeGuard
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.files.scene_file import parse_scene
+from sandbox.files.archive import data_of
+from sandbox.files.older_pairs import parse_pair
+from sandbox.files.scene_file import content_of, parse_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command, from_data, to_data
 from sandbox.session.log import Log
 
 FORMAT = "auxetic-sandbox log"
 VERSION = 1
-VERSION_WITH_START = 2  # of a log that holds a scene file
+VERSION_WITH_PAIR = 2  # of older logs that hold a pair of files
+VERSION_WITH_START = 3  # of a log that holds a scene file
+_VERSIONS = (VERSION, VERSION_WITH_PAIR, VERSION_WITH_START)
 LARGEST = 256 * 1024 * 1024  # bytes
 MOST_LINES = 2_000_000  # a hand at a window gives 60 commands a second
 MOST_INCREMENTS = 10_000_000
@@ -39,8 +43,7 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
         "settings": log.settings,
     }
     if start is not None:
-        data = base64.b64encode(start.data).decode("ascii")
-        head["start"] = {"text": start.text.decode("utf-8"), "grains": data}
+        head["start"] = base64.b64encode(content_of(start)).decode("ascii")
     lines = [
         head,
         *({"at": at, **to_data(command)} for at, command in log.commands),
@@ -62,7 +65,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
             f"{path}: not a log of this program (its first line does not say {FORMAT!r})"
         )
     version = head.get("version")
-    if isinstance(version, bool) or version not in (VERSION, VERSION_WITH_START):
+    if isinstance(version, bool) or version not in _VERSIONS:
         raise InputError(
             f"{path}: log version {version!r}, this program reads {VERSION_WITH_START}; update the program"
         )
@@ -76,8 +79,10 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         and isinstance(settings, dict)
     ):
         raise InputError(f"{path}: line 1 must name scene, packing, seed and settings")
-    if ("start" in head) != (version == VERSION_WITH_START):
-        raise InputError(f"{path}: line 1: a log of version {VERSION_WITH_START} has a start")
+    if ("start" in head) == (version == VERSION):
+        raise InputError(
+            f"{path}: line 1: a log has a start if it began with a file, and only then"
+        )
     if len(entries) < 2 or "end" not in last:
         raise InputError(
             f"{path}: the log is truncated (its last line does not say where the run ended)"
@@ -100,24 +105,30 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(
             f"{path}: the last line must give 'end', a number of increments, and 'hash'"
         )
-    start = _start(path, head["start"]) if version == VERSION_WITH_START else None
+    start = None if version == VERSION else _start(path, head["start"], version)
     return Log(scene, packing, seed, settings, tuple(commands), end, digest, start)
 
 
-def _start(path: Path, start: object) -> SceneFile:
+def _start(path: Path, start: object, version: int) -> SceneFile:
     """The scene file that a log holds. Raises InputError as for the file itself."""
+    name = f"{path}: start"
+    if version == VERSION_WITH_START:
+        return parse_scene(name, _bytes(path, start))
     if not isinstance(start, dict) or set(start) != {"text", "grains"}:
         raise InputError(f"{path}: line 1: start must have text and grains")
-    text, grains = start["text"], start["grains"]
-    if not isinstance(text, str) or not isinstance(grains, str):
+    if not isinstance(start["text"], str):
         raise InputError(f"{path}: line 1: start must have text and grains")
+    grains = _bytes(path, start["grains"])
+    return parse_pair(name, start["text"].encode(), lambda _: grains)
+
+
+def _bytes(path: Path, text: object) -> bytes:
     try:
-        data = base64.b64decode(grains, validate=True)
-        return parse_scene(f"{path}: start", text.encode(), data)
-    except ValueError as error:  # an InputError is one, too
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path}: line 1: the grains of start are damaged") from None
+        if isinstance(text, str):
+            return base64.b64decode(text, validate=True)
+    except ValueError:
+        pass
+    raise InputError(f"{path}: line 1: the start is damaged")
 
 
 def _entries(path: Path) -> Iterator[dict[str, Any]]:
@@ -127,7 +138,7 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
             raise InputError(f"{path}: {'this is no file' if path.exists() else 'no such file'}")
         if path.stat().st_size > LARGEST:
             raise InputError(f"{path}: larger than any log of this program; not opened")
-        with path.open(encoding="utf-8", newline="\n") as file:
+        with path.open(encoding="utf-8-sig", newline="\n") as file:
             for number, line in enumerate(file, 1):
                 if number > MOST_LINES:
                     raise InputError(f"{path}: more lines than any log of this program has")
@@ -144,18 +155,14 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
 
 def _entry(path: Path, number: int, line: str) -> dict[str, Any]:
     try:
-        entry = json.loads(line, parse_constant=lambda name: _refuse(name))
-    except (ValueError, RecursionError):
+        entry = data_of(line.encode())
+    except InputError as error:
         raise InputError(
-            f"{path}: line {number} is not valid JSON; the log is damaged or truncated"
+            f"{path}: line {number} is not valid JSON; the log is damaged or truncated: {error}"
         ) from None
     if not isinstance(entry, dict):
         raise InputError(f"{path}: line {number} is not a JSON object")
     return entry
-
-
-def _refuse(name: str) -> float:
-    raise ValueError(name)
 
 
 def _whole(value: object) -> TypeGuard[int]:

@@ -1,154 +1,166 @@
-"""What a person has made, as a file to keep and to share: a readable NAME.toml, and beside it NAME.npz with the grains.
+"""What a person has made, as one file to keep and to share. Opened, it goes on to the last bit as if it had never been closed.
 
-Both are data; nothing in them is run. What is read may come from anyone: each key, each number and the grains' checksum are
-looked at before anything is built, and what does not fit is one line of InputError.
+It is a zip with readable texts: ``scene.json`` says what was built, ``state.json`` how it stood, and arrays beside them have the
+grains and the rows of the history. All are data; nothing in them is run. What is read may come from anyone: all of it is looked
+at before anything is built, and what does not fit is one line of InputError. The name of the file means nothing.
 """
 
 from __future__ import annotations
 
-import hashlib
-import io
 import os
-import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.files import atomic_write
 from core.packing import Packing
-from sandbox.files.scene_checks import check_grains, friction_of, numbers, placements_of, walls_of
-from sandbox.files.toml_text import toml_text
-from sandbox.session.beginning import Made, SceneFile
-from sandbox.session.editing import line_of
+from core.relaxation import Report
+from sandbox.files.archive import LARGEST, ZIP, first_text, pack, unpack
+from sandbox.files.older_pairs import is_pair, parse_pair, scene_of_pair
+from sandbox.files.plain import Arrays, Form, Plain
+from sandbox.files.scene_checks import check_history, check_scene, check_state
+from sandbox.session.beginning import Made, SceneFile, State
+from sandbox.session.history import History, Row
 from scenes import registry
-from scenes.parameter import check_seed
 
 FORMAT = "auxetic-sandbox scene"
-VERSION = 1
-SUFFIX = ".toml"
-LARGEST_TEXT = 1 << 20  # bytes
-LARGEST_GRAINS = 1 << 26
+VERSION = 2  # 1 were pairs of files
+SUFFIX = ".scene"
+SUFFIXES = (SUFFIX, ".toml")  # of files to be opened, the older ones too
 MOST_SHOWN = 24  # files of a folder that a menu has, the newest first
 MOST_LOOKED_AT = 400
-ABOUT = (
-    "# A scene of the auxetic sandbox: open it with `python -m sandbox play THIS_FILE`.\n"
-    "# The grains are in the file beside it; keep both together. Lengths are in radii of a large grain.\n"
-)
-_KEYS = {
-    "format": str,
-    "version": int,
-    "scene": str,
-    "packing": str,
-    "seed": int,
-    "grains": str,
-    "grains_sha256": str,
-    "settings": dict,
-    "bodies": list,
-    "walls": list,
-}
+HEAD, STATE, BEFORE_EDIT = "scene", "state", "before_edit"
+_HEAD_KEYS = ("format", "version", "scene", "packing", "seed", "built")
 
 
-def write_scene(
-    path: str | os.PathLike[str],
-    made: Made,
-    grains: str | None = None,
-    *,
-    lasting: bool = True,
-) -> None:
-    """Write ``path`` and the grains' file beside it, both or neither; ``grains`` is its name if not that of ``path``.
+def write_scene(path: str | os.PathLike[str], made: Made, *, lasting: bool = True) -> None:
+    """Write ``path`` whole, or leave what is there. During an increment it is the state that this began with.
 
-    During an increment it is the state before. ``lasting``: see ``core.files``. Raises InputError for a name that does not end
-    in .toml, OSError as the system does.
+    ``lasting``: see ``core.files``; without, it is not compressed either. Raises OSError as the system does.
     """
-    path = Path(path)
-    if path.suffix != SUFFIX:
-        raise InputError(f"{path}: the name of a scene file must end in {SUFFIX}")
-    name = grains or path.with_suffix(".npz").name
-    friction, bodies = made.state.friction, made.state.bodies
-    extra: dict[str, NDArray[Any]] = {}
-    if friction is not None:
-        keys, slips = friction.memory()
-        extra = {"spin": friction.spin, "contact_keys": keys, "contact_slips": slips}
-    packed = io.BytesIO()
-    made.state.packing.write(packed, extra, compressed=lasting)
-    text = toml_text(
-        {
-            "format": FORMAT,
-            "version": VERSION,
-            "scene": made.scene,
-            "packing": made.packing,
-            "seed": made.seed,
-            "grains": name,
-            "grains_sha256": hashlib.sha256(packed.getvalue()).hexdigest(),
-            "settings": dict(made.settings),
-            "bodies": [
-                {"name": b.body.name, "x": b.position[0], "y": b.position[1], "angle": b.angle}
-                for b in bodies
-                if not b.body.drawn
-            ],
-            "walls": [{"points": line_of(b.body)} for b in bodies if b.body.drawn],
-        }
-    )
-    try:
-        written = (ABOUT + text).encode()
-    except UnicodeEncodeError:
-        raise InputError(f"{str(path)!r}: choose a name with plain letters") from None
-    # The grains come first, so that there is never a text without them.
-    with (
-        atomic_write(path, lasting=lasting) as toml,
-        atomic_write(path.with_name(name), lasting=lasting) as npz,
-    ):
-        npz.write(packed.getvalue())
-        toml.write(written)
+    content = content_of(made.to_file(os.fspath(path)), compressed=lasting)
+    with atomic_write(path, lasting=lasting) as file:
+        file.write(content)
+
+
+def content_of(file: SceneFile, *, compressed: bool = True) -> bytes:
+    """The bytes of a scene file: always the same for the same scene."""
+    arrays: Arrays = {}
+    head = {
+        "format": FORMAT,
+        "version": VERSION,
+        "scene": file.scene,
+        "packing": file.packing,
+        "seed": file.seed,
+        "built": dict(file.built),
+    }
+    texts: dict[str, object] = {HEAD: head, STATE: _PLAIN.write(file.state, STATE, arrays)}
+    if file.before_edit is not None:
+        texts[BEFORE_EDIT] = _PLAIN.write(file.before_edit, BEFORE_EDIT, arrays)
+    return pack(texts, arrays, compressed=compressed)
 
 
 def read_scene(path: str | os.PathLike[str]) -> SceneFile:
-    """Read what ``write_scene`` wrote. Raises InputError for what is missing, malformed, altered, hostile or newer."""
+    """Read what ``write_scene`` wrote, or a pair of files of an older program.
+
+    Raises InputError for what is missing, malformed, altered, hostile or newer.
+    """
     path = Path(path)
-    text = _read(path, LARGEST_TEXT)
-    head = _head(str(path), text)
-    return parse_scene(str(path), text, _read(path.with_name(head["grains"]), LARGEST_GRAINS), head)
+    content = _read(path, LARGEST)
+    if not is_pair(content):
+        return parse_scene(str(path), content)
+    return parse_pair(str(path), content, lambda name: _read_beside(path, name))
 
 
-def parse_scene(
-    name: str, text: bytes, data: bytes, head: Mapping[str, Any] | None = None
-) -> SceneFile:
-    """A scene file from the bytes of its two parts. ``head``: what ``text`` says, if that is known."""
-    head = _head(name, text) if head is None else head
-    if hashlib.sha256(data).hexdigest() != head["grains_sha256"]:
-        raise InputError(
-            f"{name}: {head['grains']} is not the file that was written with it (other checksum)"
-        )
+def parse_scene(name: str, content: bytes) -> SceneFile:
+    """A scene file from its bytes. Raises InputError as ``read_scene`` does."""
     try:
+        if not content.startswith(ZIP):
+            raise InputError("not a scene file of this program")
+        texts, arrays = unpack(content)
+        head = _head(texts.pop(HEAD, None))
         scene = registry.get(head["scene"])
-        settings = scene.settings(numbers(head["settings"]))
-        packing = scene.check_packing(head["packing"])
-        seed = check_seed(head["seed"])
-        placements = placements_of(head.get("bodies", []))
-        walls = walls_of(head.get("walls", []))
-        grains = Packing.load(head["grains"], io.BytesIO(data))
-        spin, memory = friction_of(data, len(grains))
-        check_grains(grains)
+        packing, seed, built = check_scene(scene, head["packing"], head["seed"], head["built"])
+        states = {}
+        for part in (STATE, BEFORE_EDIT):
+            if part == STATE or part in texts:
+                state = _PLAIN.read(State, texts.pop(part, None), part, arrays)
+                states[part] = check_state(scene, state)
+        if unknown := [*texts, *arrays]:
+            raise InputError(f"it has a part {unknown[0][:80]!r}, which nobody knows")
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    return SceneFile(
-        name,
-        scene.name,
-        packing,
-        seed,
-        settings,
-        placements,
-        walls,
-        grains,
-        spin,
-        memory,
-        text,
-        data,
-    )
+    return SceneFile(name, scene.name, packing, seed, built, states[STATE], states.get(BEFORE_EDIT))
+
+
+def _head(head: object) -> dict[str, Any]:
+    """What a file says that it is."""
+    if not isinstance(head, dict) or head.get("format") != FORMAT:
+        raise InputError(f"not a scene file of this program (no format {FORMAT!r})")
+    version = head.get("version")
+    if isinstance(version, bool) or version != VERSION:
+        raise InputError(
+            f"version {version!r} of the format, this program reads {VERSION}; update the program"
+        )
+    if set(head) != set(_HEAD_KEYS):
+        odd = min(set(head) ^ set(_HEAD_KEYS))
+        raise InputError(f"unknown key {odd[:80]!r}" if odd in head else f"{odd} is missing")
+    if not (isinstance(head["scene"], str) and isinstance(head["built"], dict)):
+        raise InputError("scene or built is not what it should be")
+    return head
+
+
+def _rows_of(history: History) -> Mapping[str, NDArray[Any]]:
+    """The columns of a history's table."""
+    return {field.name: history.column(field.name) for field in fields(Row)}
+
+
+def _history_of(columns: Mapping[str, NDArray[Any]]) -> History:
+    """A history from its columns. What an older program has not measured is as it is by itself."""
+    kinds = get_type_hints(Row)
+    letters = {bool: "b", int: "i", float: "fi", str: "U"}  # a number may be whole in all rows
+    known = [f for f in fields(Row) if f.name in columns or f.default is MISSING]
+    lists = []
+    for field in known:
+        column = columns.get(field.name)
+        if (
+            column is None
+            or column.ndim != 1
+            or column.dtype.kind not in letters[kinds[field.name]]
+        ):
+            raise InputError(f"column {field.name} of the rows is missing, or of another kind")
+        lists.append(column.tolist())
+    if unknown := set(columns) - set(kinds):
+        raise InputError(f"the rows have an unknown column {min(unknown)[:80]!r}")
+    if len({len(values) for values in lists}) != 1:
+        raise InputError("the columns of the rows are not of one length")
+    names = [field.name for field in known]
+    history = History()
+    for values in zip(*lists, strict=True):
+        history.append(Row(**dict(zip(names, values, strict=True))))
+    check_history(history)
+    return history
+
+
+_PLAIN = Plain(
+    {
+        Packing: Form(Packing.arrays, lambda arrays: Packing.of_arrays(arrays, "its grains")),
+        History: Form(_rows_of, _history_of),
+    },
+    # Nothing was pulled at, or the numbers blew up.
+    frozenset({"hand_force", *(field.name for field in fields(Report))}),
+)
+
+
+def _read_beside(path: Path, name: str) -> bytes:
+    """The grains of an older pair, also where both files have another name now."""
+    beside = path.with_name(name)
+    renamed = path.with_suffix(".npz")
+    return _read(renamed if renamed.is_file() and not beside.is_file() else beside, LARGEST)
 
 
 def _read(path: Path, most: int) -> bytes:
@@ -168,35 +180,6 @@ def _read(path: Path, most: int) -> bytes:
     return content
 
 
-def _head(name: str, text: bytes) -> dict[str, Any]:
-    """What the text says, its keys and types checked."""
-    try:
-        head = tomllib.loads(text.decode("utf-8"))
-    except (ValueError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{name}: not a readable scene file ({reason})") from None
-    if head.get("format") != FORMAT:
-        raise InputError(f"{name}: not a scene file of this program (no format = {FORMAT!r})")
-    version = head.get("version")
-    if isinstance(version, bool) or version != VERSION:
-        raise InputError(
-            f"{name}: version {version!r} of the format, this program reads {VERSION}; update the program"
-        )
-    for key in head:
-        if key not in _KEYS:
-            raise InputError(f"{name}: unknown key {key!r}")
-    for key, kind in _KEYS.items():
-        if key in ("bodies", "walls") and key not in head:
-            continue
-        if not isinstance(head.get(key), kind) or isinstance(head[key], bool):
-            raise InputError(f"{name}: {key} is missing, or not what it should be")
-    grains = head["grains"]
-    plain = grains == Path(grains).name and not set(grains) & set('/\\:*?"<>|\0')
-    if not plain or not grains.endswith(".npz") or len(grains) > 255:
-        raise InputError(f"{name}: grains must be the plain name of an .npz file beside this one")
-    return head
-
-
 @dataclass(frozen=True, slots=True)
 class SceneHere:
     """A scene file: where it is, and the name of the scene that it was made from."""
@@ -208,8 +191,8 @@ class SceneHere:
 def scenes_here(folder: Path) -> tuple[SceneHere, ...]:
     """The scene files of a folder, the newest first; what cannot be read is left out."""
     try:
-        paths = sorted(folder.glob(f"*{SUFFIX}"))[:MOST_LOOKED_AT]
-        dated = sorted(((path.stat().st_mtime, path) for path in paths), reverse=True)
+        paths = sorted(p for suffix in SUFFIXES for p in folder.glob(f"*{suffix}"))
+        dated = sorted(((p.stat().st_mtime, p) for p in paths[:MOST_LOOKED_AT]), reverse=True)
     except OSError:
         return ()
     found = (_look(path) for _, path in dated)
@@ -218,12 +201,12 @@ def scenes_here(folder: Path) -> tuple[SceneHere, ...]:
 
 def _look(path: Path) -> SceneHere | None:
     try:
-        if not path.is_file() or path.stat().st_size > LARGEST_TEXT:
+        if not path.is_file():
             return None
-        head = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        with path.open("rb") as file:
+            zipped = file.read(len(ZIP)) == ZIP
+            file.seek(0)
+            scene = _head(first_text(file, HEAD))["scene"] if zipped else scene_of_pair(file)
+    except (OSError, InputError):
         return None
-    scene = head.get("scene")
-    if head.get("format") != FORMAT or not isinstance(scene, str):
-        return None
-    return SceneHere(path, scene)
+    return None if scene is None else SceneHere(path, scene)

@@ -61,7 +61,8 @@ def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
     for session in sessions:
         with build_bar() as progress:
             session.build(progress)
-        session.submit(Protocol(True))
+        if not session.frame().protocol:  # a file may have been left in the middle of it
+            session.submit(Protocol(True))
     return run(sessions, in_step(sessions), steps, output)
 
 

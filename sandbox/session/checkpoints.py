@@ -22,6 +22,10 @@ DENSE = 600  # of the latest increments each is kept, of 600 more every second, 
 MOST_BYTES = 150_000_000
 OVERHEAD = 4_000  # bytes of a checkpoint beside its arrays, about
 
+# The contacts follow from the state.
+NO_PAIRS = GrainContacts(*(np.zeros(0, dtype=np.int64),) * 2, *(np.zeros(0),) * 6)
+NO_BODIES = RigidContacts(*(np.zeros(0, dtype=np.int64),) * 2, *(np.zeros(0),) * 8)
+
 
 @dataclass(frozen=True)
 class Checkpoint:
@@ -33,6 +37,9 @@ class Checkpoint:
     history: History  # of which the first ``length`` rows belong to it
     length: int
     settings: Values
+    before_edit: Checkpoint | None = (
+        None  # while an edit is not relaxed yet: to go back if it was too tight
+    )
 
     @property
     def increment(self) -> int:
@@ -145,13 +152,9 @@ class Checkpoints:
         return increment % (1 << ((newest - increment) // self._dense).bit_length()) != 0
 
 
-_NO_PAIRS = GrainContacts(*(np.zeros(0, dtype=np.int64),) * 2, *(np.zeros(0),) * 6)
-_NO_BODIES = RigidContacts(*(np.zeros(0, dtype=np.int64),) * 2, *(np.zeros(0),) * 8)
-
-
 def bare(increment: Increment) -> Increment:
     """The increment without its contacts, which follow from the state, and their frictional forces: most of its bytes."""
-    return replace(increment, grain_contacts=_NO_PAIRS, body_contacts=_NO_BODIES, friction=None)
+    return replace(increment, grain_contacts=NO_PAIRS, body_contacts=NO_BODIES, friction=None)
 
 
 def _on_one_course(one: Checkpoint, other: Checkpoint) -> bool:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import astuple, dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -78,6 +78,15 @@ class History:
         self._rows: list[Row] = []
         self._curve = np.empty((3, 256))  # stroke, force, sum of all magnitudes so far
         self.events: tuple[Event, ...] = ()  # the newest last
+
+    @classmethod
+    def of(cls, rows: Iterable[Iterable[Any]], events: tuple[Event, ...]) -> History:
+        """One with these rows, as ``rows`` gives them, and these events."""
+        history = cls()
+        for row in rows:
+            history.append(Row(*row))
+        history.events = events
+        return history
 
     def __len__(self) -> int:
         return len(self._rows)

@@ -28,10 +28,18 @@ AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that 
 
 
 class Run:
-    """From what was built onwards. ``finished`` counts increments; row 0 of the history is the start, relaxed at rest."""
+    """From what was built onwards: row 0 of the history is the start, relaxed at rest. Or onwards from ``kept``, as if it had
+    never been left.
+    """
 
     def __init__(
-        self, scene: Scene, settings: Values, packing_kind: str, seed: int, setup: Setup
+        self,
+        scene: Scene,
+        settings: Values,
+        packing_kind: str,
+        seed: int,
+        setup: Setup,
+        kept: Checkpoint | None = None,
     ) -> None:
         drive = setup.handles[0]
         self.scene, self.settings, self.setup = scene, settings, setup
@@ -43,12 +51,21 @@ class Run:
         self.course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
         self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
+        self._begun: Checkpoint | None = None  # what the increment under way has begun with
+        self.last: Increment
+        if kept is None:
+            self._relax_first()
+        else:
+            self.restore(kept)
+
+    def _relax_first(self) -> None:
+        """Row 0."""
         self.engine.begin({})
         last: Increment | None = None
         while last is None:
             last = self.engine.relax(1_000)
         self.last = last
-        self.course.moving = setup.drag > 0.0
+        self.course.moving = self.setup.drag > 0.0
         self._add_row(last)
         self._remark(None, None, 0)
         self._keep()
@@ -127,6 +144,7 @@ class Run:
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
+            self._begun = self.settled
             targets = {} if self.course.touched else self.hands.next_targets()
             if not targets and self._still:
                 return False
@@ -174,7 +192,7 @@ class Run:
             return False
         assert before is not None
         self.restore(before[0])
-        self.course = before[1]
+        self.course = before[1].copy()
         self.say(TOO_TIGHT)
         return True
 
@@ -256,12 +274,12 @@ class Run:
 
     @property
     def settled(self) -> Checkpoint:
-        """The state between increments: as it is, or as it was before the one under way."""
-        if self._kept is not None:
-            return self._kept
+        """All that the next increment depends on, or that the one under way has begun with."""
         if self.engine.busy:
-            return self.checkpoints.at(len(self.history) - 1)
-        return self.present()
+            assert self._begun is not None
+            return self._begun
+        kept = self.present() if self._kept is None else self._kept
+        return replace(kept, course=self.course.copy())  # hands have come and gone since
 
     def _keep(self) -> None:
         """Keep the state after an increment."""
@@ -270,6 +288,7 @@ class Run:
         self.checkpoints.add(self._kept)
 
     def _checkpoint(self, before: Checkpoint | None) -> Checkpoint:
+        edit = self._before_edit
         return Checkpoint(
             engine=self.engine.save(None if before is None else before.engine),
             course=self.course.copy(),
@@ -277,6 +296,7 @@ class Run:
             history=self.history,
             length=len(self.history),
             settings=self.settings,
+            before_edit=None if edit is None else replace(edit[0], course=edit[1]),
         )
 
     def restore(self, kept: Checkpoint) -> None:
@@ -287,7 +307,8 @@ class Run:
         pairs, bodies = self.engine.contacts()
         self.last = replace(kept.last, grain_contacts=pairs, body_contacts=bodies)
         self.checkpoints.travel(kept)
-        self._kept, self._before_edit = kept, None
+        before = kept.before_edit
+        self._kept, self._before_edit = kept, None if before is None else (before, before.course)
 
     def recall(self, increment: int) -> None:
         """Go to the state after that increment, or the nearest kept before it."""

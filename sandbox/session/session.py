@@ -12,6 +12,7 @@ from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
 from core.warmup import compile_kernels
 from sandbox.session.beginning import Asked, Made, SceneFile, put_into
+from sandbox.session.checkpoints import Checkpoint
 from sandbox.session.commands import (
     Change,
     Command,
@@ -72,7 +73,7 @@ class Session:
         self._lock = threading.Lock()
         self._commands: list[tuple[int, Command]] = []
         self._finished = 0
-        self._refusals = 0, ""  # how many commands could not be carried out, and why the latest
+        self._refusals = 0, ""
         self._run: Run | None = None
         self._start: Start | None = None
         self._past = Past()
@@ -81,7 +82,7 @@ class Session:
     @classmethod
     def from_file(cls, file: SceneFile) -> Session:
         """A session that begins where a scene file was written."""
-        session = cls(file.scene, file.packing, file.seed, file.settings)
+        session = cls(file.scene, file.packing, file.seed, file.built)
         session._first = replace(session._first, file=file)
         return session
 
@@ -92,7 +93,7 @@ class Session:
 
     def _build(self, asked: Asked) -> None:
         report = self._progress or _silent
-        self._compile(asked.scene.ingredients(asked.settings))
+        self._compile(asked.scene.ingredients(asked.settings_now))
         report(PACKING, COMPILE_SHARE)
         setup = asked.scene.build(
             asked.settings,
@@ -100,12 +101,11 @@ class Session:
             asked.seed,
             lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
         )
-        if asked.file is not None:
-            put_into(setup, asked.file)
+        kept = None if asked.file is None else put_into(setup, asked)
         bodies = keep_bodies(setup.world)
         friction = None if setup.friction is None else setup.friction.copy()
-        start = Start(setup.packing.copy(), friction, setup, bodies, asked)
-        self._start, self._run = start, _first_run(asked, setup)
+        start = Start(setup.packing.copy(), friction, setup, bodies, asked, kept)
+        self._start, self._run = start, _first_run(asked, setup, kept)
         report("ready", 1.0)
 
     def _compile(self, terms: Ingredients) -> None:
@@ -179,17 +179,26 @@ class Session:
                 self._go_to(self._past.redo(self._moment()))
 
     def _reset(self) -> None:
-        """The start, with the settings as they are now."""
+        """The start, with the settings as they are now: as it was built, or as a file had it, nothing held and the script off."""
         start = self._start
         assert start is not None
+        if start.kept is not None:
+            self._go_back_to(start, start.kept)
+            return
         start.setup.packing = start.packing.copy()
         start.setup.friction = None if start.friction is None else start.friction.copy()
         place_bodies(start.setup.world, start.bodies)
-        changed = {
-            name for name, value in self.settings.items() if value != start.asked.settings[name]
-        }
-        self.scene.adjust(start.setup, self.settings, frozenset(changed))
+        changed = _differing(self.settings, start.asked.settings_now)
+        self.scene.adjust(start.setup, self.settings, changed)
         self._run = Run(self.scene, self.settings, self.packing, self.seed, start.setup)
+
+    def _go_back_to(self, start: Start, kept: Checkpoint) -> None:
+        settings = self.settings
+        asked = start.asked
+        self._run = Run(asked.scene, kept.settings, asked.packing, asked.seed, start.setup, kept)
+        self._run.course.still()
+        if changed := _differing(settings, kept.settings):
+            self._run.adjust(settings, changed)
 
     def _moment(self) -> Moment:
         """Where the session stands."""
@@ -243,6 +252,11 @@ class Session:
         if self._run is None:
             raise RuntimeError("build the session first")
         return self._run
+
+    @property
+    def refusals(self) -> tuple[int, str]:
+        """How many commands could not be carried out, and why the latest."""
+        return self._refusals
 
     @property
     def busy(self) -> bool:
@@ -306,7 +320,7 @@ class Session:
     @property
     def settings(self) -> Values:
         """All parameters as they are now."""
-        return self._first.settings if self._run is None else self._run.settings
+        return self._first.settings_now if self._run is None else self._run.settings
 
     @property
     def history(self) -> History:
@@ -329,10 +343,19 @@ class Session:
 
     def made(self) -> Made:
         """What there is to be kept in a file; quick, as it shares the checkpoint that is kept anyway."""
-        kept = self.run.settled
-        scene, file = self.scene.name, self.file
-        worth = bool(self._commands) or file is not None
-        return Made(scene, self.packing, self.seed, kept.settings, kept.engine, file, worth)
+        run, start = self.run, self._start
+        assert start is not None
+        asked = start.asked
+        worth = bool(self._commands) or asked.file is not None
+        return Made(
+            asked.scene.name,
+            asked.packing,
+            asked.seed,
+            asked.settings,
+            run.settled,
+            asked.file,
+            worth,
+        )
 
     def checks(self) -> list[Check]:
         """The scene's claims about this run."""
@@ -355,15 +378,20 @@ class Session:
         )
 
 
-def _first_run(asked: Asked, setup: Setup) -> Run:
+def _differing(one: Values, other: Values) -> frozenset[str]:
+    """The names of settings that differ."""
+    return frozenset(name for name, value in one.items() if value != other[name])
+
+
+def _first_run(asked: Asked, setup: Setup, kept: Checkpoint | None) -> Run:
     """The run of what was just built. Raises InputError where a file has brought what cannot be run."""
     try:
-        run = Run(asked.scene, asked.settings, asked.packing, asked.seed, setup)
+        run = Run(asked.scene, asked.settings_now, asked.packing, asked.seed, setup, kept)
     except InputError as error:
         if asked.file is None:
             raise
         raise InputError(f"{asked.file.name}: {error}") from None
-    if asked.file and run.failed:
+    if asked.file and kept is None and run.failed:
         raise InputError(f"{asked.file.name}: its grains cannot be relaxed")
     return run
 

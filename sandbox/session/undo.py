@@ -29,6 +29,7 @@ class Start:
     setup: Setup
     bodies: tuple[BodyState, ...]
     asked: Asked
+    kept: Checkpoint | None = None  # where a file begins
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import pygame
 
 from core.errors import InputError
 from sandbox.draw.views import view_after
+from sandbox.files.scene_file import SUFFIX
 from sandbox.session.commands import Change, Protocol
 from sandbox.window.display import save_picture
 from sandbox.window.export import export, free_stem
@@ -163,10 +164,9 @@ class Actions:
 
     def save(self, stem: str = "") -> None:
         """Write what there is down as a scene file in the current folder, under a name that is still free."""
-        endings = (".toml", ".npz")
-        if not stem or any(Path(stem + ending).exists() for ending in endings):
-            stem = free_stem(stem or f"sandbox-{self.stage.panes.scene}", endings)
-        name = stem + ".toml"
+        if not stem or Path(stem + SUFFIX).exists():
+            stem = free_stem(stem or f"sandbox-{self.stage.panes.scene}", (SUFFIX,))
+        name = stem + SUFFIX
         try:
             self.stage.panes.save(name)
         except InputError as error:

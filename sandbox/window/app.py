@@ -14,6 +14,7 @@ from sandbox.draw.pages.cards import draw_error
 from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.warmup import Warmup
 from sandbox.files import autosave
+from sandbox.interrupts import requests_to_end
 from sandbox.session.beginning import SceneFile
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.arrows import Arrows
@@ -55,35 +56,39 @@ def run(
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``log``: where the log of the last
-    scene started is written at the end. Raises InputError without a display and for what does not exist.
+    scene started is written at the end. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the code is 128 and
+    the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
-    panes = Panes(packing, seed, autosave=autosave.begin())
-    app = App(panes, looks)
-    clean = False
-    try:
-        if scene is None:
-            app.pages.open_menu()
-        elif isinstance(scene, SceneFile):
-            app.stage.open(scene)
-        else:
-            app.stage.start(scene, settings, packings)
-        while app.stage.running:
-            app.tick()
-        clean = True
-    except KeyboardInterrupt:
-        clean = True
-    finally:
-        ended = app.close(log, clean)
-    if app.farewell:
-        sys.stdout.write(f"{app.farewell}\n")
+    # Before there is a window: where nobody else listens, SDL makes of a request to end a click on the close button.
+    with requests_to_end() as requests:
+        panes = Panes(packing, seed, autosave=autosave.begin())
+        app = App(panes, looks)
+        clean = False
+        try:
+            if scene is None:
+                app.pages.open_menu()
+            elif isinstance(scene, SceneFile):
+                app.stage.open(scene)
+            else:
+                app.stage.start(scene, settings, packings)
+            while app.stage.running and not requests:
+                app.tick()
+            clean = not requests  # who had to go finds the work where it was
+        except KeyboardInterrupt:
+            clean = True
+        finally:
+            ended = app.close(log, clean)
+    with contextlib.suppress(OSError):  # a terminal that is closed
+        if app.farewell:
+            sys.stdout.write(f"{app.farewell}\n")
+        sys.stdout.flush()
+    code = 128 + requests[0] if requests else 0  # as shells count
     if not ended:
         # A thread is still compiling. That cannot be broken off, and when the interpreter ends
         # under it, LLVM aborts: leave at once. Nothing was built, so there is nothing to save.
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(0)
-    return 0
+        os._exit(code)
+    return code
 
 
 class App:
@@ -136,7 +141,7 @@ class App:
     def close(self, log: str | os.PathLike[str] | None = None, clean: bool = True) -> bool:
         """Close the window, end the threads, write the log; False if one is still compiling.
 
-        A ``clean`` end needs no autosave.
+        A ``clean`` end needs no autosave. Raises InputError if the log cannot be written.
         """
         stage = self.stage
         stage.running = False
@@ -144,8 +149,11 @@ class App:
         stage.sound.close()
         self.farewell = stage.recorder.close()
         pygame.display.quit()
-        ended = stage.panes.close(log, clean)
-        return self._warmup.join(PATIENCE) and ended
+        try:
+            ended = stage.panes.close(log, clean)
+        finally:
+            warm = self._warmup.join(PATIENCE)
+        return warm and ended
 
     # -- one picture --
 

@@ -104,7 +104,11 @@ class Pages:
         if not self._looked:
             self._looked = True
             with contextlib.suppress(OSError):
-                self._left = list(autosave.find())
+                found = autosave.find()
+                self._left = list(found.leftovers)
+                if found.set_aside:
+                    named = (f"{one.path} ({one.why})" for one in found.set_aside)
+                    self.stage.toast(words.SET_ASIDE.format(files="; ".join(named)))
         self._tell()
 
     def _tell(self) -> None:

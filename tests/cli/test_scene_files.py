@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.cli.main import parse
+from sandbox.cli.main import main, parse
 from sandbox.files.log_file import read_log, write_log
 from sandbox.files.scene_file import read_scene, write_scene
+from sandbox.record.record import Output, record
 from sandbox.session.commands import DrawWall, Erase, Place, Protocol
 from sandbox.session.replay import replay
 from sandbox.session.session import Session
@@ -21,18 +22,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     session = built(grains=12)
     do(session, DrawWall(((12.0, 16.0), (18.0, 15.0))), Place(9.0, 10.0, "auxetic"))
     where = tmp_path_factory.mktemp("made")
-    write_scene(where / "made.toml", session.made())
+    write_scene(where / "made.scene", session.made())
     return where
 
 
 @pytest.mark.end_to_end
 def test_record_goes_on_with_the_file(folder: Path) -> None:
-    words = ("record", "made.toml", "--steps", "40", "--size", "320x240")
+    words = ("record", "made.scene", "--steps", "40", "--size", "320x240")
     done = sandbox(folder, *words, "--data", "made.csv", "--out", "made.png")
     assert done.returncode == 0, done.stderr
-    assert len(rows_of(folder / "made.csv")) == 41
+    already = len(read_scene(folder / "made.scene").state.going_on.history)  # type: ignore[union-attr]
+    assert len(rows_of(folder / "made.csv")) == already + 40
     assert (folder / "made.png").stat().st_size > 1000
-    session = Session.from_file(read_scene(folder / "made.toml"))
+    session = Session.from_file(read_scene(folder / "made.scene"))
     session.build()
     session.submit(Protocol(True))
     increments = 0
@@ -44,7 +46,7 @@ def test_record_goes_on_with_the_file(folder: Path) -> None:
 
 @pytest.mark.end_to_end
 def test_a_log_of_a_file_replays_without_it(folder: Path, tmp_path: Path) -> None:
-    session = Session.from_file(read_scene(folder / "made.toml"))
+    session = Session.from_file(read_scene(folder / "made.scene"))
     session.build()
     grains = session.frame().grains
     do(session, DrawWall(((20.0, 5.0), (22.0, 5.0))), Erase(15.0, 15.0, 8.0))
@@ -61,12 +63,15 @@ def test_a_log_of_a_file_replays_without_it(folder: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("record", "none.toml", "--out", "a.png"), "no such file"),
-        (("record", "made.toml", "--out", "a.png", "--seed", "1"), "leave this out"),
-        (("record", "made.toml", "--out", "a.png", "--packing", "mixed"), "leave this out"),
-        (("record", "made.toml", "--out", "a.png", "--set", "friction=1"), "write them there"),
-        (("play", "none.toml"), "no such file"),
-        (("play", "made.toml", "--set", "friction=1"), "write them there"),
+        (("record", "none.scene", "--out", "a.png"), "no such file"),
+        (("record", "made.scene", "--out", "a.png", "--seed", "1"), "leave this out"),
+        (("record", "made.scene", "--out", "a.png", "--packing", "mixed"), "leave this out"),
+        (
+            ("record", "made.scene", "--out", "a.png", "--set", "friction=1"),
+            "change them in the window",
+        ),
+        (("play", "none.scene"), "no such file"),
+        (("play", "made.scene", "--set", "friction=1"), "change them in the window"),
     ],
 )
 def test_mistakes_are_one_line(folder: Path, words: tuple[str, ...], why: str) -> None:
@@ -79,13 +84,100 @@ def test_mistakes_are_one_line(folder: Path, words: tuple[str, ...], why: str) -
 
 
 @pytest.mark.end_to_end
-@pytest.mark.parametrize("content", [b"", b"\xff", b"x = [[[", b"version = 1"])
-def test_files_that_are_none_are_one_line(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / "it.toml").write_bytes(content)
-    done = sandbox(tmp_path, "record", "it.toml", "--out", "a.png")
-    assert done.returncode == 2
-    assert done.stderr.startswith("error: it.toml")
-    assert done.stderr.count("\n") == 1
+@pytest.mark.parametrize("name", ["it.toml", "it.scene", "it"])
+@pytest.mark.parametrize("content", [b"", b"\xff", b"PK\x03\x04", b"x = [[[", b"version = 1"])
+def test_files_that_are_none_are_one_line(
+    tmp_path: Path, content: bytes, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    assert main(["record", str(tmp_path / name), "--data", str(tmp_path / "a.csv")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {tmp_path / name}")
+    assert said.count("\n") == 1
+
+
+def test_renamed_it_is_the_same_file(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Also to what ends otherwise, or in nothing; the name of a scene is the scene."""
+    monkeypatch.chdir(tmp_path)
+    states = set()
+    for name in ("made.scene", "made.zip", "made", "./intruder"):
+        Path(name).write_bytes((folder / "made.scene").read_bytes())
+        assert main(["record", name, "--data", "a.csv", "--steps", "2"]) == 0
+        states.add(state(capsys.readouterr().out))
+    assert len(states) == 1
+
+
+def test_a_drive_that_was_left_in_the_middle_is_gone_on_with(tmp_path: Path) -> None:
+    session = built(grains=5)
+    session.submit(Protocol(True))
+    do(session, Protocol(True), Place(20.0, 3.0, "regular"))
+    assert session.frame().protocol
+    rows = len(session.history)
+    write_scene(tmp_path / "it.scene", session.made())
+    again = Session.from_file(read_scene(tmp_path / "it.scene"))
+    record([again], 3, Output(None, tmp_path / "it.csv", (320, 240)))
+    table = rows_of(tmp_path / "it.csv")
+    assert len(table) == rows + 3
+    for _ in range(3):
+        while not session.advance(1000):
+            pass
+    assert again.state_hash() == session.state_hash()
+
+
+def log_with(folder: Path, line: str) -> Path:
+    """A log of nothing done, with one more command in it."""
+    session = built(grains=5)
+    path = folder / "it.jsonl"
+    write_log(path, session.log())
+    head, end = path.read_text(encoding="utf-8").splitlines()
+    path.write_text(f"{head}\n{line}\n{end}\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        '"command": "grab", "handle": "extruder"',
+        '"command": "release", "handle": "nobody"',
+        '"command": "change", "name": "colour", "value": 3',
+        '"command": "change", "name": "friction", "value": 1e300',
+        '"command": "change", "name": "scene", "value": "trampoline"',
+        '"command": "undo"',
+        '"command": "place", "x": -50.0, "y": 3.0, "kind": "regular", "goes_on": false',
+    ],
+)
+def test_a_replay_says_what_was_refused(
+    tmp_path: Path, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log_with(tmp_path, f'{{"at": 0, {command}}}')
+    assert main(["replay", str(path)]) == 1
+    said = capsys.readouterr()
+    assert "1 command of the log could not be carried out" in said.out
+    assert "Traceback" not in said.err
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '{"at": 0, "command": "reset", "command": "reset"}',
+        '{"at": 0, "at": 0, "command": "reset"}',
+        '{"at": 0, "command": "move", "handle": "intruder", "x": 1e400, "y": 0}',
+        '{"at": 0, "command": "move", "handle": "intruder", "x": NaN, "y": 0}',
+    ],
+)
+def test_logs_that_say_too_much_are_refused(
+    tmp_path: Path, line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = log_with(tmp_path, line)
+    assert main(["replay", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert f"{path}: line 2" in said
+    assert said.count("\n") == 1
 
 
 def test_help_tells_of_it() -> None:

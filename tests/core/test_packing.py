@@ -310,18 +310,11 @@ def test_pickles_are_not_opened(tmp_path: Path) -> None:
     assert_refused(path, "not a readable")
 
 
-@pytest.mark.parametrize("compressed", [True, False])
-def test_extra_arrays_are_written_and_passed_over(compressed: bool) -> None:
+def test_its_arrays_are_the_whole_of_it() -> None:
     packing = examples.random_grains(12, 9.0, 1)
-    file = io.BytesIO()
-    packing.write(
-        file, {"spin": np.arange(12.0), "format": np.array("mine")}, compressed=compressed
-    )
-    assert Packing.load("grains.npz", io.BytesIO(file.getvalue())).hash() == packing.hash()
-    with np.load(io.BytesIO(file.getvalue())) as data:
-        assert data["spin"].tolist() == list(range(12))
-
-
-def test_what_is_read_already_is_refused_by_its_name() -> None:
-    with pytest.raises(InputError, match="elsewhere"):
-        Packing.load("elsewhere.npz", io.BytesIO(b"PK"))
+    others = {"spin": np.arange(12.0)}
+    assert Packing.of_arrays({**others, **packing.arrays()}, "it").hash() == packing.hash()
+    for name in packing.arrays():
+        fewer = {key: array for key, array in packing.arrays().items() if key != name}
+        with pytest.raises(InputError, match="elsewhere"):
+            Packing.of_arrays(fewer, "elsewhere")

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from core.packing import Packing
 from sandbox.files import autosave
-from sandbox.files.autosave import Autosave, find
+from sandbox.files.autosave import ASIDE, Autosave, Found, find
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import DrawWall, Place, Protocol
 from sandbox.session.session import Session
@@ -77,9 +79,9 @@ def test_after_kill_9_the_same_grains_are_there(tmp_path: Path) -> None:
     with program, program.stdout:
         digest = program.stdout.readline().strip()
         assert len(digest) == 64
-        assert find(tmp_path) == ()  # it still runs
+        assert find(tmp_path) == Found()  # it still runs
         program.send_signal(signal.SIGKILL)
-    (leftover,) = find(tmp_path)
+    (leftover,) = find(tmp_path).leftovers
     assert (leftover.scene, leftover.grains) == ("workshop", 13)
     assert abs(leftover.saved - time.time()) < 600.0
     session = Session.from_file(leftover.file)
@@ -96,7 +98,7 @@ def test_a_clean_end_leaves_nothing(tmp_path: Path) -> None:
     one = Autosave(tmp_path, NEVER)
     one.keep(made_something().made())
     assert one.write()
-    assert list(tmp_path.glob("*.toml")) == [one.path]
+    assert list(tmp_path.glob("*.scene")) == [one.path]
     one.close()
     assert not list(tmp_path.iterdir())
 
@@ -106,7 +108,7 @@ def test_any_other_end_leaves_the_newest_state(tmp_path: Path) -> None:
     one = Autosave(tmp_path, NEVER)
     one.keep(session.made())
     one.close(clean=False)
-    (leftover,) = find(tmp_path)
+    (leftover,) = find(tmp_path).leftovers
     assert leftover.file.grains.hash() == session.run.setup.packing.hash()
     empty = Autosave(tmp_path / "empty", NEVER)
     empty.close(clean=False)
@@ -126,8 +128,7 @@ def test_it_is_written_only_when_there_is_something_new(saved: Autosave) -> None
     do(session, Protocol(False), Place(15.0, 3.0, "regular"))
     saved.keep(session.made())
     assert saved.write()
-    written = [path.name for path in saved.path.parent.glob("*.npz")]
-    assert len(written) == 2  # what the text names, and the one before
+    assert sorted(p.suffix for p in saved.path.parent.iterdir()) == [".lock", ".scene"]
 
 
 def test_the_thread_writes_by_itself(tmp_path: Path) -> None:
@@ -162,12 +163,12 @@ def test_running_programs_are_left_alone(tmp_path: Path, saved: Autosave) -> Non
     for one in (saved, other):
         one.keep(made_something().made())
         one.write()
-    assert find(tmp_path) == ()
+    assert find(tmp_path) == Found()
     crash(other)
-    assert [one.path for one in find(tmp_path)] == [other.path]
+    assert [one.path for one in find(tmp_path).leftovers] == [other.path]
     assert other.path != saved.path
     other.close()
-    assert find(tmp_path) == ()
+    assert find(tmp_path) == Found()
     assert saved.path.exists()
 
 
@@ -176,7 +177,7 @@ def test_what_is_gone_on_with_is_taken_away_when_it_is_saved_again(tmp_path: Pat
     gone.keep(made_something().made())
     gone.write()
     crash(gone)
-    (leftover,) = find(tmp_path)
+    (leftover,) = find(tmp_path).leftovers
     session = Session.from_file(leftover.file)
     session.build()
     one = Autosave(tmp_path, NEVER)
@@ -186,27 +187,108 @@ def test_what_is_gone_on_with_is_taken_away_when_it_is_saved_again(tmp_path: Pat
     assert one.write()
     assert not gone.path.exists()
     crash(one)
-    (again,) = find(tmp_path)
+    (again,) = find(tmp_path).leftovers
     assert again.file.grains.hash() == leftover.file.grains.hash()
     assert isinstance(again.file, SceneFile)
 
 
-def test_what_cannot_be_read_is_taken_away_and_other_files_are_not(tmp_path: Path) -> None:
+def test_what_is_gone_on_with_stays_if_it_never_ran(tmp_path: Path) -> None:
     gone = Autosave(tmp_path, NEVER)
     gone.keep(made_something().made())
     gone.write()
     crash(gone)
-    Packing([0.0], [0.0]).save(next(tmp_path.glob("*.npz")))
-    others = [tmp_path / name for name in ("autosave-mine.toml", "notes.toml")]
+    (leftover,) = find(tmp_path).leftovers
+    one = Autosave(tmp_path, NEVER)
+    one.adopt(leftover)
+    one.keep(made_something().made())  # something else was begun instead
+    one.write()
+    one.close()
+    assert gone.path.exists()
+    assert len(find(tmp_path).leftovers) == 1
+
+
+def newer(path: Path) -> None:
+    rewrite_head(path, lambda head: head.update(version=9))
+
+
+def one_key_more(path: Path) -> None:
+    rewrite_head(path, lambda head: head.update(speed=1))
+
+
+def scene_not_there(path: Path) -> None:
+    rewrite_head(path, lambda head: head.update(scene="trampoline"))
+
+
+def half(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:1000])
+
+
+def forbidden(path: Path) -> None:
+    path.chmod(0)
+    if os.access(path, os.R_OK):
+        pytest.skip("nothing is forbidden to this person")
+
+
+def a_folder(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
+
+
+def rewrite_head(path: Path, change: Callable[[dict[str, Any]], object]) -> None:
+    with zipfile.ZipFile(path) as archive:
+        content = {info.filename: archive.read(info) for info in archive.infolist()}
+    head = json.loads(content["scene.json"])
+    change(head)
+    content["scene.json"] = json.dumps(head).encode()
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, part in content.items():
+            archive.writestr(name, part)
+
+
+@pytest.mark.parametrize("spoil", [newer, one_key_more, scene_not_there, half, forbidden, a_folder])
+def test_what_cannot_be_read_is_set_aside_and_named(
+    tmp_path: Path, spoil: Callable[[Path], None]
+) -> None:
+    gone = Autosave(tmp_path, NEVER)
+    gone.keep(made_something().made())
+    gone.write()
+    crash(gone)
+    spoil(gone.path)
+    content = gone.path.read_bytes() if gone.path.is_file() and spoil is not forbidden else b""
+    others = [tmp_path / name for name in ("autosave-mine.scene", "notes.scene")]
     for other in others:
         other.write_text("mine")
-    assert find(tmp_path) == ()
-    assert not gone.path.exists()
+    found = find(tmp_path)
+    assert found.leftovers == ()
+    (aside,) = found.set_aside
+    assert aside.path == tmp_path / ASIDE / gone.path.name
+    assert aside.path.exists()
+    assert aside.why
+    assert "\n" not in aside.why
+    if content:
+        assert aside.path.read_bytes() == content  # never changed, never deleted
     assert all(other.exists() for other in others)
+    assert find(tmp_path) == Found()  # it is said once
+    assert not list(tmp_path.glob("*.lock"))
+
+
+def test_what_an_older_program_left_is_found_and_set_aside_too(tmp_path: Path) -> None:
+    pairs = Path(__file__).parent / "pairs"
+    path = tmp_path / "autosave-12-0123abcd.toml"
+    text = (pairs / "workshop.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace("workshop.npz", f"{path.stem}.1.npz"), encoding="utf-8")
+    grains = path.with_name(f"{path.stem}.1.npz")
+    grains.write_bytes((pairs / "workshop.npz").read_bytes())
+    (leftover,) = find(tmp_path).leftovers
+    assert leftover.scene == "workshop"
+    grains.write_bytes(b"")
+    (aside,) = find(tmp_path).set_aside
+    assert sorted(p.name for p in aside.path.parent.iterdir()) == [grains.name, path.name]
+    assert [p.name for p in tmp_path.iterdir()] == [ASIDE]
 
 
 def test_without_a_folder_there_is_none(tmp_path: Path) -> None:
-    assert find(tmp_path / "nowhere") == ()
+    assert find(tmp_path / "nowhere") == Found()
     (tmp_path / "file").write_text("")
     assert autosave.begin(tmp_path / "file") is None
 

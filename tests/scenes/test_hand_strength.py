@@ -91,8 +91,8 @@ def test_log_and_scene_file_keep_it(tmp_path: Path) -> None:
     log = read_log(tmp_path / "run.jsonl")
     assert log.settings[HAND_STRENGTH] == 2.0
     assert any(isinstance(c, Change) and c.value == 3.0 for _, c in log.commands)
-    write_scene(tmp_path / "made.toml", session.made())
-    again = Session.from_file(read_scene(tmp_path / "made.toml"))
+    write_scene(tmp_path / "made.scene", session.made())
+    again = Session.from_file(read_scene(tmp_path / "made.scene"))
     again.build()
     assert again.settings[HAND_STRENGTH] == 3.0
     assert again.run.strength == 3.0

@@ -34,7 +34,7 @@ class LeftBehind:
 @pytest.fixture
 def left(monkeypatch: pytest.MonkeyPatch) -> list[LeftBehind]:
     found = [LeftBehind(12.0), LeftBehind(300.0)]
-    monkeypatch.setattr(autosave, "find", lambda: tuple(found))
+    monkeypatch.setattr(autosave, "find", lambda: autosave.Found(tuple(found)))  # type: ignore[arg-type]
     return found
 
 
@@ -84,11 +84,21 @@ def test_without_anything_left_the_menu_begins_with_where_to_start(desk: Desk) -
     assert (desk.app.pages.menu.resume, desk.app.pages.menu.chosen) == (None, START)
 
 
+def test_what_was_set_aside_is_named(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    aside = autosave.SetAside(tmp_path / "autosave-1-0123abcd.scene", "of a newer program")
+    monkeypatch.setattr(autosave, "find", lambda: autosave.Found((), (aside,)))
+    menu_open(desk)
+    assert str(aside.path) in desk.app.stage.notices.latest
+    assert "newer program" in desk.app.stage.notices.latest
+
+
 def test_a_file_that_cannot_be_read_is_said_and_the_menu_stays(desk: Desk, tmp_path: Path) -> None:
     menu_open(desk)
-    desk.app.pages.take(Choice(file=tmp_path / "gone.toml"))
+    desk.app.pages.take(Choice(file=tmp_path / "gone.scene"))
     assert desk.page() == "menu"
-    assert "gone.toml" in desk.app.stage.notices.latest
+    assert "gone.scene" in desk.app.stage.notices.latest
 
 
 @pytest.mark.parametrize(

@@ -6,13 +6,16 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from core.errors import InputError
-from sandbox.files.autosave import Autosave, find
+from sandbox.files import log_file
+from sandbox.files.autosave import Autosave, Found, find
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.commands import Change, DrawWall, Place, Protocol, Undo
 from sandbox.session.frame import Frame
+from sandbox.session.log import Log
 from sandbox.window.solvers.panes import Panes
 from tests.session.test_editing import built, do
 
@@ -46,27 +49,27 @@ def run(tmp_path: Path) -> Iterator[Panes]:
 def file(tmp_path: Path) -> Path:
     session = built(grains=0)
     do(session, WALL, Place(10.0, 4.0, "regular"), Place(13.0, 4.0, "auxetic"))
-    write_scene(tmp_path / "made.toml", session.made())
-    return tmp_path / "made.toml"
+    write_scene(tmp_path / "made.scene", session.made())
+    return tmp_path / "made.scene"
 
 
 def test_what_was_made_is_saved_and_opened(run: Panes, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="nothing to save"):
-        run.save(tmp_path / "it.toml")
+        run.save(tmp_path / "it.scene")
     run.start("workshop", {"grains": 0})
     wait(run, lambda frame: True)
     run.send(Place(10.0, 4.0, "regular"))
     run.send(WALL)
     wait(run, lambda frame: frame.grains == 1 and len(frame.bodies) == 3)
-    run.save(tmp_path / "it.toml")
+    run.save(tmp_path / "it.scene")
     with pytest.raises(InputError, match="nowhere"):
-        run.save(tmp_path / "nowhere" / "it.toml")
+        run.save(tmp_path / "nowhere" / "it.scene")
     run.start("workshop", {"grains": 5})
     wait(run, lambda frame: frame.grains == 5)
-    run.open(tmp_path / "it.toml")
+    run.open(tmp_path / "it.scene")
     wait(run, lambda frame: frame.grains == 1 and len(frame.bodies) == 3)
     with pytest.raises(InputError, match="no such file"):
-        run.open(tmp_path / "none.toml")
+        run.open(tmp_path / "none.scene")
     wait(run, lambda frame: frame.grains == 1)
 
 
@@ -129,7 +132,7 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     first.send(Place(10.0, 4.0, "auxetic"))
     wait(first, lambda frame: frame.grains == 1)
     first.close(None, clean=False)
-    (leftover,) = find(tmp_path)
+    (leftover,) = find(tmp_path).leftovers
     second = Panes("regular", 5, autosave=Autosave(tmp_path, 0.02))
     second.take_up(leftover)
     frame = wait(second, lambda frame: frame.grains == 1)
@@ -141,3 +144,67 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     assert kept.grains.hash() == leftover.file.grains.hash()
     second.close(None)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("trouble", ["a full disk", "a folder that is gone"])
+def test_a_log_that_cannot_be_written_leaves_the_autosave(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trouble: str
+) -> None:
+    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    run.send(Place(10.0, 4.0, "auxetic"))
+    wait(run, lambda frame: frame.grains == 1)
+    log = tmp_path / "there" / "it.jsonl"
+    if trouble == "a full disk":
+        log.parent.mkdir()
+
+        def full(_: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        with monkeypatch.context() as broken:
+            broken.setattr(log_file, "atomic_write", full)
+            with pytest.raises(InputError, match=r"No space left.*kept"):
+                run.close(log)
+    else:
+        with pytest.raises(InputError, match=r"it.jsonl.*kept"):
+            run.close(log)
+    (leftover,) = find(tmp_path / "autosave").leftovers
+    assert leftover.grains == 1
+
+
+def test_a_clean_end_writes_the_log_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    write, close = log_file.write_log, Autosave.close
+
+    def noted(log: Path, of: Log) -> None:
+        order.append("log")
+        write(log, of)
+
+    def noted_too(one: Autosave, clean: bool = True) -> None:
+        order.append("autosave")
+        close(one, clean)
+
+    monkeypatch.setattr("sandbox.window.solvers.panes.write_log", noted)
+    monkeypatch.setattr(Autosave, "close", noted_too)
+    run.close(tmp_path / "it.jsonl")
+    assert order == ["log", "autosave"]
+    assert (tmp_path / "it.jsonl").exists()
+    assert find(tmp_path / "autosave") == Found()
+
+
+def test_side_by_side_all_begin_together_from_the_file(run: Panes, tmp_path: Path) -> None:
+    session = built(grains=6)
+    do(session, *[Protocol(True)] * 4)
+    write_scene(tmp_path / "it.scene", session.made())
+    run.open(tmp_path / "it.scene")
+    first = wait(run, lambda frame: True)
+    assert first.increment >= 4
+    run.compare()
+    frames = [wait(run, lambda frame: True, k) for k in range(3)]
+    assert [frame.increment for frame in frames] == [0, 0, 0]
+    assert all(not frame.protocol for frame in frames)
+    assert all(np.abs(frame.x - session.frame().x).max() < 0.2 for frame in frames)

@@ -447,9 +447,9 @@ def test_scene_file_is_named_saved_and_opened(
     desk.key(pygame.K_RETURN)
     tab_to(desk, "files/save")
     desk.key(pygame.K_RETURN)
-    (tmp_path / "my trap.toml").touch()
+    (tmp_path / "my trap.scene").touch()
     desk.key(pygame.K_RETURN)  # nothing is written over
-    assert saved == ["my trap.toml", "my trap-1.toml"]
+    assert saved == ["my trap.scene", "my trap-1.scene"]
     tab_to(desk, "files/open/made before.toml")
     assert "files/open/something else.toml" not in desk.app.stage.focus.stops()
     desk.key(pygame.K_RETURN)
@@ -458,7 +458,7 @@ def test_scene_file_is_named_saved_and_opened(
 
 def test_name_of_a_file_cannot_leave_the_folder(desk: Desk) -> None:
     files = next(section for section in desk.app.panel.sections if section.name == "files")
-    files.use("files/name", "../../elsewhere.toml", True)
+    files.use("files/name", "../../elsewhere.scene", True)
     assert files.stem == "elsewhere"  # type: ignore[attr-defined]
 
 

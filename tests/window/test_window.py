@@ -13,12 +13,14 @@ import pytest
 
 from core.errors import InputError
 from sandbox.files.log_file import read_log
+from sandbox.files.scene_file import write_scene
 from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
 from sandbox.session.log import Log
 from sandbox.window import display
 from sandbox.window.solvers import panes
 from sandbox.words import language, words
 from scenes import registry
+from tests.session.test_editing import built
 from tests.window.desk import Desk
 
 
@@ -231,6 +233,10 @@ def test_scene_files_of_the_folder_are_in_the_menu(
     (tmp_path / "my bridge.toml").write_text(head, encoding="utf-8")
     (tmp_path / "pyproject.toml").write_text('name = "no scene"\n', encoding="utf-8")
     (tmp_path / "broken.toml").write_bytes(b"\xff = [")
+    (tmp_path / "broken.scene").write_bytes(b"PK\x03\x04")
+    session = built(grains=0)
+    write_scene(tmp_path / "my trap.scene", session.made())
+    os.utime(tmp_path / "my trap.scene", (0, 0))
     monkeypatch.chdir(tmp_path)
     running.key(pygame.K_m)
     files = [
@@ -238,7 +244,10 @@ def test_scene_files_of_the_folder_are_in_the_menu(
         for card in running.app.pages.menu.contents("mixed", "dark").cards
         if "file/" in card.name
     ]
-    assert [(card.title, card.picture) for card in files] == [("my bridge", "hopper")]
+    assert [(card.title, card.picture) for card in files] == [
+        ("my bridge", "hopper"),
+        ("my trap", "workshop"),
+    ]
 
 
 def test_packing_looked_at_in_the_menu_only_is_forgotten(running: Desk) -> None:

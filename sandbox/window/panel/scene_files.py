@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from sandbox.draw.widgets.controls import Button, Control, Note, Row, TextField
-from sandbox.files.scene_file import SUFFIX, scenes_here
+from sandbox.files.scene_file import SUFFIXES, scenes_here
 from sandbox.window.actions import Actions
 from sandbox.window.sections import StageSection, Value
 from sandbox.window.stage import Stage
@@ -45,7 +45,8 @@ class FilesSection(StageSection):
         """Save, or open."""
         del done
         if name == "files/name":
-            self.stem = Path(str(value).strip()).name.removesuffix(SUFFIX)
+            name = Path(str(value).strip()).name
+            self.stem = next((name[: -len(s)] for s in SUFFIXES if name.endswith(s)), name)
         elif name == "files/save":
             self.actions.save(self._stem())
             self._looked = -STALE

@@ -139,10 +139,14 @@ class Panes:
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
         """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""
         kept = file if isinstance(file, SceneFile) else read_scene(file)
-        session = Session.from_file(kept)
-        self.packing = kept.packing
-        wanted = Wanted(kept.scene, kept.packing, kept.seed, kept.settings)
-        self._begin(wanted, (kept.packing,), [session])
+        self._begin_with([kept], kept.packing)
+
+    def _begin_with(self, files: Sequence[SceneFile], packing: str) -> None:
+        """With what files have, of which one is the first to be looked at."""
+        self.packing = packing
+        first = files[0]
+        wanted = Wanted(first.scene, packing, first.seed, first.settings)
+        self._begin(wanted, [file.packing for file in files], [*map(Session.from_file, files)])
 
     def take_up(self, leftover: Leftover) -> None:
         """Go on where a program that is gone had to stop. Its autosave is taken away as soon as there is another."""
@@ -182,6 +186,11 @@ class Panes:
             return words.COMPARE_LATER
         if len(kinds) < 2 or frame.packing not in kinds:
             return words.COMPARE_NOTHING
+        made = self.snapshot.made
+        if made is not None and made.file is not None:
+            # All of them from the same places, and counted from there.
+            self._begin_with([made.file.of_kind(kind) for kind in kinds], frame.packing)
+            return words.COMPARE_ANEW
         repeat = self._can_be_repeated(frame)
         if not repeat:
             self._start = self._wanted = replace(
@@ -190,21 +199,18 @@ class Panes:
         self._of_kind(frame.packing)
         others = [kind for kind in kinds if kind != frame.packing]
         try:
-            made = [self._another(kind) for kind in others]
+            begun = [self._another(kind) for kind in others]
         except InputError as error:
             return words.say(message(error))
         if not repeat:
             self.send(Reset())
             self._conductor.forget_past()
-        panes = [self._pane(*each) for each in zip(others, made, strict=True)]
+        panes = [self._pane(*each) for each in zip(others, begun, strict=True)]
         self._panes = sorted([*self._panes, *panes], key=lambda pane: kinds.index(pane.packing))
         return words.COMPARE_ON if repeat else words.COMPARE_ANEW
 
     def _another(self, kind: str) -> Session:
         """The same start with another packing."""
-        main = self.snapshot.made
-        if main is not None and main.file is not None:
-            return Session.from_file(main.file.of_kind(kind))
         start = self._start
         return self._make(start.scene, kind, start.seed, dict(start.settings))
 
@@ -315,23 +321,43 @@ class Panes:
     def close(self, log: str | os.PathLike[str] | None, clean: bool = True) -> bool:
         """End the threads and write the session's log if one is wanted, side by side that of the first packing.
 
-        A ``clean`` end takes the autosave away. False if a thread is still compiling. Raises InputError if the log cannot be
-        written.
+        A ``clean`` end then takes the autosave away. False if a thread is still compiling. Raises InputError if the log cannot be
+        written; the autosave stays then.
         """
+        try:
+            ended = self._end(log)
+        except InputError as error:
+            self._close_autosave(clean=False)
+            if self.autosave is None:
+                raise
+            raise InputError(
+                f"{error}; what was there is kept, the menu offers it next time"
+            ) from error
+        self._close_autosave(clean)
+        return ended
+
+    def _end(self, log: str | os.PathLike[str] | None) -> bool:
+        """End the threads and write the log."""
         main = self._main
-        if self.autosave is not None:
-            self.autosave.keep(self.snapshot.made)
-            self.autosave.close(clean)
         wanted = log is not None and self.snapshot.frame is not None
         others = [pane.solver for pane in self._panes if pane is not main]
         ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
-        if log is not None and wanted and ended and main is not None:
+        stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
+        if log is not None and wanted and main is not None:
+            if not ended or main.session.busy:
+                raise InputError(
+                    f"{os.fspath(log)}: not written, the solver did not come to an end"
+                )
             try:
                 write_log(log, main.session.log())
             except OSError as error:
                 raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
-        stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
         return all(stopped) and ended
+
+    def _close_autosave(self, clean: bool) -> None:
+        if self.autosave is not None:
+            self.autosave.keep(self.snapshot.made)
+            self.autosave.close(clean)
 
     # What is known of the session without asking it.
 
