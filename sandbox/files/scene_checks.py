@@ -13,6 +13,7 @@ import numpy as np
 from core.errors import InputError
 from core.friction import Friction
 from core.hand import CELL
+from core.material import DEFAULT_POISSON_RATIO
 from core.packing import MAX_LABEL, Packing
 from core.relaxation import StopReason
 from core.rigid import Point
@@ -28,8 +29,6 @@ MOST_BODIES = 200
 RADII = (0.05, 50.0)  # [R] of grains at rest
 CROWD = 60  # grains whose centres lie in one square with sides of the smallest grain's radius
 MOST_INCREMENTS = 10_000_000
-STIFFNESSES = (5.0, 2000.0)  # [k] that scenes offer
-ROUNDEST = 0.99  # Poisson's ratios lie within ± this
 
 
 def check_scene(
@@ -46,6 +45,7 @@ def check_state(scene: Scene, state: State) -> State:
     _check_places(state.bodies)
     _check_walls(state.walls)
     check_grains(state.grains)
+    _check_material(scene, state.grains)
     _check_friction(state)
     if state.going_on is not None:
         _check_going_on(state, state.going_on)
@@ -53,20 +53,14 @@ def check_state(scene: Scene, state: State) -> State:
 
 
 def check_grains(grains: Packing) -> None:
-    """Raises InputError for grains that this program would not have made: too many, of odd sizes or material, or in one heap."""
+    """Raises InputError for grains that this program would not have made: too many, of odd sizes, or in one heap."""
     if len(grains) > MOST_GRAINS:
         raise InputError(f"{len(grains)} grains are more than a scene holds ({MOST_GRAINS})")
     if not len(grains):
         return
-    radius, stiffness = grains.rest_radius, grains.contact_stiffness
+    radius = grains.rest_radius
     if np.any((radius < RADII[0]) | (radius > RADII[1])):
         raise InputError(f"rest radii of grains must lie between {RADII[0]:g} and {RADII[1]:g} R")
-    if np.any((stiffness < STIFFNESSES[0]) | (stiffness > STIFFNESSES[1])):
-        raise InputError(
-            f"the stiffness of contacts must lie between {STIFFNESSES[0]:g} and {STIFFNESSES[1]:g} k"
-        )
-    if np.any(np.abs(grains.poisson_ratio) > ROUNDEST):
-        raise InputError(f"Poisson's ratios must lie between -{ROUNDEST} and {ROUNDEST}")
     longer, shorter = grains.semi_axes
     if np.any(shorter <= 0.0) or np.any(longer > 100.0 * radius):
         raise InputError("a grain is flatter or longer than any grain of this program")
@@ -76,6 +70,18 @@ def check_grains(grains: Packing) -> None:
     _, crowd = np.unique(squares, axis=1, return_counts=True)
     if crowd.max() > CROWD:
         raise InputError("the grains lie on top of one another")
+
+
+def _check_material(scene: Scene, grains: Packing) -> None:
+    """Raises InputError for what no parameter of the scene can be set to."""
+    for parameter in scene.parameters:
+        if parameter.name == "contact_stiffness":
+            for stiffness in np.unique(grains.contact_stiffness):
+                parameter.check(float(stiffness))
+    offered = [p for p in scene.parameters if p.name.endswith("poisson_ratio")]
+    most = max((abs(v) for p in offered for v in (p.low, p.high)), default=DEFAULT_POISSON_RATIO)
+    if np.any(np.abs(grains.poisson_ratio) > most):
+        raise InputError(f"Poisson's ratios of grains must lie between {-most:g} and {most:g}")
 
 
 def check_history(history: History) -> None:
