@@ -42,7 +42,7 @@ def _run(words: list[str]) -> int:
         print(f"error: {arguments.one_line(str(error))}", file=sys.stderr)
         return USER_MISTAKE
     except KeyboardInterrupt:
-        print("stopped: nothing was written", file=sys.stderr)
+        print("stopped", file=sys.stderr)  # a command that knows more about it says it itself
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read the output (head, a pager) has seen enough. Python flushes once more at exit.

@@ -146,7 +146,14 @@ def bench(options: argparse.Namespace) -> int:
 def study(options: argparse.Namespace) -> int:
     """Carry out one of the studies."""
     studies.refuse_foreign_options(options)
-    return studies.STUDIES[options.name](options)
+    try:
+        return studies.STUDIES[options.name](options)
+    except KeyboardInterrupt:
+        # After the last run, that is: a study that is stopped earlier says how far it has come.
+        there = Path(options.out).is_dir()
+        kept = f"; what was finished is in {options.out}, the same command goes on from there"
+        print(f"stopped{kept if there else ': nothing was written'}", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _output(
@@ -258,8 +265,11 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
 
 def _interrupted(outcome: Outcome, output: Output | None) -> str:
     written = []
-    if outcome.increments and output and output.film:
-        written.append(f"{outcome.frames} frames to {output.film}")
+    if outcome.frames and output and output.film:
+        one = output.film.suffix.lower() == ".png"
+        written.append(
+            f"{'the last frame' if one else f'{outcome.frames} frames'} to {output.film}"
+        )
     if outcome.increments and output and output.table:
         written.append(f"{outcome.rows} rows to {output.table}")
     what = f"wrote {' and '.join(written)}" if written else "nothing was written"

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,6 +51,9 @@ class Outcome:
     interrupted: bool
 
 
+NOTHING = Outcome(0, 0, 0, interrupted=True)  # Ctrl-C while grains were packed
+
+
 def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
     """Build all sessions, run their scripted protocols for ``steps`` increments, write the output.
 
@@ -58,25 +62,57 @@ def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
     """
     from sandbox.session.commands import Protocol
 
-    for session in sessions:
-        with build_bar() as progress:
-            session.build(progress)
-        if not session.frame().protocol:  # a file may have been left in the middle of it
-            session.submit(Protocol(True))
+    try:
+        for session in sessions:
+            with build_bar() as progress:
+                session.build(progress)
+            if not session.frame().protocol:  # a file may have been left in the middle of it
+                session.submit(Protocol(True))
+    except KeyboardInterrupt:
+        return NOTHING
     return run(sessions, in_step(sessions), steps, output)
 
 
 def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
-    """Run a log again, one frame an increment; the session at its end, and what it came to."""
-    from sandbox.session.replay import replay
+    """Run a log again, one frame an increment; the session at its end, and what it came to.
 
-    with build_bar() as progress:
-        states = replay(log, progress)
-        session = next(states)
-    outcome = run([session], (True for _ in states), log.end, output)
-    if not outcome.interrupted:
-        next(states, None)  # commands that came after the last increment
+    Raises InputError if the log does not fit the scene.
+    """
+    from sandbox.session.replay import session_of
+
+    session = session_of(log)
+    try:
+        with build_bar() as progress:
+            session.build(progress)
+    except KeyboardInterrupt:
+        return session, NOTHING
+    work = _repeated(log, session)
+    outcome = run([session], work, log.end, output)
+    try:
+        for _ in () if outcome.interrupted else work:
+            pass  # commands that came after the last increment
+    except KeyboardInterrupt:
+        outcome = replace(outcome, interrupted=True)
     return session, outcome
+
+
+def _repeated(log: Log, session: Session) -> Iterator[bool]:
+    """Command after command and slice after slice, so that Ctrl-C is heard between them; True where an increment was finished."""
+    waiting = deque(log.commands)
+    work = session.slices(SLICE)
+    while True:
+        while waiting and waiting[0][0] == session.finished:
+            session.submit(waiting.popleft()[1])
+            session.settle()
+            yield False
+        if session.finished >= log.end:
+            return
+        finished = next(work, None)
+        if finished is None:
+            raise InputError(
+                f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
+            )
+        yield finished
 
 
 def in_step(sessions: Sequence[Session]) -> Iterator[bool]:

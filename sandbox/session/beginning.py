@@ -279,6 +279,7 @@ def _checkpoint(
         grain_contacts=NO_PAIRS,
         body_contacts=NO_BODIES,
         unbalanced=on.unbalanced,
+        beyond_cone=on.history[-1].beyond_cone if len(on.history) else 0.0,
     )
     history = History.of(on.history.rows(), on.events)  # the run's own, as it goes on
     return Checkpoint(engine, on.course, last, history, len(history), state.settings)

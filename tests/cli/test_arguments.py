@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from sandbox.cli import arguments, verbs
+from sandbox.cli import arguments, study, verbs
 from sandbox.cli import main as cli
 
 
@@ -203,3 +203,23 @@ def test_a_full_disk_is_one_line(
     assert capsys.readouterr().err == (
         "error: no room left on the disk for run.jsonl: free some and try again\n"
     )
+
+
+def test_a_study_that_is_stopped_at_its_end_says_what_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ctrl-C while tables are written and figures drawn, after all runs; and before there is anything."""
+    folder = tmp_path / "results"
+
+    def stop(options: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(study.STUDIES, "hand", stop)
+    words = ["study", "hand", "--out", str(folder)]
+    assert cli.main(words) == 130
+    assert capsys.readouterr().err == "stopped: nothing was written\n"
+    folder.mkdir()
+    assert cli.main(words) == 130
+    said = capsys.readouterr().err
+    assert said.startswith(f"stopped; what was finished is in {folder}")
+    assert "nothing" not in said
