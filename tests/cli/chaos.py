@@ -218,15 +218,17 @@ def look(left: Left) -> str:
 
 
 def _lost(left: Left, rows: list[list[str]]) -> list[str]:
-    """A film shows every increment, and its encoder finishes what it was given: the table must not be far behind."""
+    """A film shows every increment, and its encoder finishes what it was given: how far is the table behind?
+
+    Told, and not asserted: what share of the time was spent on building the scene is not known here. That rows are written every
+    half second is tested with a clock of its own (``test_table.py``).
+    """
     parts = list(left.folder.glob(".film.*.part.mp4"))
     if left.work != "film" or not parts or not parts[0].stat().st_size:
         return []
     drawn = frames_of(parts[0])
-    lost = drawn - max(len(rows) - 1, 0)
-    seconds = lost * left.seconds / drawn
-    assert seconds < 2.0, f"{lost} of {drawn} increments are lost, {seconds:.1f} s"
-    return [f"{lost} of {drawn} increments lost, {seconds:.2f} s"]
+    lost = max(drawn - max(len(rows) - 1, 0), 0)
+    return [f"{lost} of {drawn} increments lost, {lost * left.seconds / drawn:.2f} s or less"]
 
 
 def _look_at_study(left: Left) -> str:
