@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -78,7 +77,7 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
 
     Raises InputError if the log does not fit the scene.
     """
-    from sandbox.session.replay import session_of
+    from sandbox.session.replay import repeated, session_of
 
     session = session_of(log)
     try:
@@ -86,7 +85,7 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
             session.build(progress)
     except KeyboardInterrupt:
         return session, NOTHING
-    work = _repeated(log, session)
+    work = repeated(log, session, SLICE)
     outcome = run([session], work, log.end, output)
     try:
         for _ in () if outcome.interrupted else work:
@@ -94,25 +93,6 @@ def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
     except KeyboardInterrupt:
         outcome = replace(outcome, interrupted=True)
     return session, outcome
-
-
-def _repeated(log: Log, session: Session) -> Iterator[bool]:
-    """Command after command and slice after slice, so that Ctrl-C is heard between them; True where an increment was finished."""
-    waiting = deque(log.commands)
-    work = session.slices(SLICE)
-    while True:
-        while waiting and waiting[0][0] == session.finished:
-            session.submit(waiting.popleft()[1])
-            session.settle()
-            yield False
-        if session.finished >= log.end:
-            return
-        finished = next(work, None)
-        if finished is None:
-            raise InputError(
-                f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
-            )
-        yield finished
 
 
 def in_step(sessions: Sequence[Session]) -> Iterator[bool]:

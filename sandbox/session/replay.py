@@ -27,16 +27,28 @@ def replay(
     session = session_of(log)
     session.build(progress)
     yield session
+    for finished in repeated(log, session, slice_iterations):
+        if finished:
+            yield session
+
+
+def repeated(log: Log, session: Session, slice_iterations: int) -> Iterator[bool]:
+    """Command after command and slice after slice, so that Ctrl-C is heard between them; True where an increment was finished.
+
+    Raises InputError if the log does not fit the scene.
+    """
     waiting = deque(log.commands)
     work = session.slices(slice_iterations)
     while True:
         while waiting and waiting[0][0] == session.finished:
             session.submit(waiting.popleft()[1])
-        if session.finished >= log.end:
             session.settle()
+            yield False
+        if session.finished >= log.end:
             return
-        if not any(work):  # goes on to the end of an increment
+        finished = next(work, None)
+        if finished is None:
             raise InputError(
                 f"the log does not fit this program: nothing moves after increment {session.finished} of {log.end}"
             )
-        yield session
+        yield finished
