@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeGuard
 
@@ -44,13 +44,22 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
     }
     if start is not None:
         head["start"] = base64.b64encode(content_of(start)).decode("ascii")
-    lines = [
-        head,
-        *({"at": at, **to_data(command)} for at, command in log.commands),
-        {"end": log.end, "hash": log.hash},
-    ]
     with atomic_write(path) as file:
-        file.write("".join(json.dumps(line) + "\n" for line in lines).encode())
+        file.write(_line(head) + lines_of(log.commands) + last_line(log))
+
+
+def lines_of(commands: Sequence[tuple[int, Command]]) -> bytes:
+    """A line for each command."""
+    return b"".join(_line({"at": at, **to_data(command)}) for at, command in commands)
+
+
+def last_line(log: Log) -> bytes:
+    """Where the run ended."""
+    return _line({"end": log.end, "hash": log.hash})
+
+
+def _line(data: Mapping[str, object]) -> bytes:
+    return json.dumps(data).encode() + b"\n"
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:

@@ -56,13 +56,13 @@ def run(
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``log``: where the log of the last
-    scene started is written at the end. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the code is 128 and
+    scene started is written, all the time. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the code is 128 and
     the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
     # Before there is a window: where nobody else listens, SDL makes of a request to end a click on the close button.
     with requests_to_end() as requests:
-        panes = Panes(packing, seed, autosave=autosave.begin())
+        panes = Panes(packing, seed, autosave=autosave.begin(), log=log)
         app = App(panes, looks)
         clean = False
         try:
@@ -78,7 +78,7 @@ def run(
         except KeyboardInterrupt:
             clean = True
         finally:
-            ended = app.close(log, clean)
+            ended = app.close(clean)
     with contextlib.suppress(OSError):  # a terminal that is closed
         if app.farewell:
             sys.stdout.write(f"{app.farewell}\n")
@@ -138,8 +138,8 @@ class App:
         self._warmup = Warmup()
         self._warmup.start()
 
-    def close(self, log: str | os.PathLike[str] | None = None, clean: bool = True) -> bool:
-        """Close the window, end the threads, write the log; False if one is still compiling.
+    def close(self, clean: bool = True) -> bool:
+        """Close the window, end the threads and the log; False if one is still compiling.
 
         A ``clean`` end needs no autosave. Raises InputError if the log cannot be written.
         """
@@ -150,7 +150,7 @@ class App:
         self.farewell = stage.recorder.close()
         pygame.display.quit()
         try:
-            ended = stage.panes.close(log, clean)
+            ended = stage.panes.close(clean)
         finally:
             warm = self._warmup.join(PATIENCE)
         return warm and ended
@@ -166,7 +166,8 @@ class App:
             return
         stage.mouse.send_move(stage.send)
         now = time.perf_counter()
-        stage.panes.tick()
+        if said := stage.panes.tick():
+            stage.toast(said)
         snapshot = stage.panes.snapshot
         serials = stage.picture.serials
         if serials != self._serials:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pygame
@@ -17,9 +18,11 @@ from tests.window.fake_session import FakeSession
 class Desk:
     """A window, the sessions made for it, and a person at it."""
 
-    def __init__(self, size: tuple[int, int] = (800, 600), scale: float = 1.0) -> None:
+    def __init__(
+        self, size: tuple[int, int] = (800, 600), scale: float = 1.0, log: Path | None = None
+    ) -> None:
         self.sessions: list[FakeSession] = []
-        self.app = App(Panes("mixed", 1, self._make), Looks(size, scale))
+        self.app = App(Panes("mixed", 1, self._make, log=log), Looks(size, scale))
 
     def _make(self, *arguments: Any) -> Any:
         session = FakeSession(*arguments)

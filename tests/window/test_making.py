@@ -12,10 +12,12 @@ import pytest
 from core.errors import InputError
 from sandbox.files import log_file
 from sandbox.files.autosave import Autosave, Found, find
+from sandbox.files.growing_log import GrowingLog
+from sandbox.files.log_file import read_log
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.commands import Change, DrawWall, Place, Protocol, Undo
 from sandbox.session.frame import Frame
-from sandbox.session.log import Log
+from sandbox.session.replay import replay
 from sandbox.window.solvers.panes import Panes
 from tests.session.test_editing import built, do
 
@@ -42,7 +44,7 @@ def wait(run: Panes, condition: Callable[[Frame], bool], pane: int = 0) -> Frame
 def run(tmp_path: Path) -> Iterator[Panes]:
     one = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
     yield one
-    one.close(None)
+    one.close()
 
 
 @pytest.fixture
@@ -131,7 +133,7 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     first.send(WALL)
     first.send(Place(10.0, 4.0, "auxetic"))
     wait(first, lambda frame: frame.grains == 1)
-    first.close(None, clean=False)
+    first.close(clean=False)
     (leftover,) = find(tmp_path).leftovers
     second = Panes("regular", 5, autosave=Autosave(tmp_path, 0.02))
     second.take_up(leftover)
@@ -142,7 +144,7 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     assert second.autosave is not None
     kept = read_scene(second.autosave.path)
     assert kept.grains.hash() == leftover.file.grains.hash()
-    second.close(None)
+    second.close()
     assert not list(tmp_path.iterdir())
 
 
@@ -150,50 +152,71 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
 def test_a_log_that_cannot_be_written_leaves_the_autosave(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trouble: str
 ) -> None:
-    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
-    run.start("workshop", {"grains": 0})
-    wait(run, lambda frame: True)
-    run.send(Place(10.0, 4.0, "auxetic"))
-    wait(run, lambda frame: frame.grains == 1)
     log = tmp_path / "there" / "it.jsonl"
+    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02), log=log)
     if trouble == "a full disk":
         log.parent.mkdir()
 
         def full(_: object) -> None:
             raise OSError(28, "No space left on device")
 
-        with monkeypatch.context() as broken:
-            broken.setattr(log_file, "atomic_write", full)
-            with pytest.raises(InputError, match=r"No space left.*kept"):
-                run.close(log)
-    else:
-        with pytest.raises(InputError, match=r"it.jsonl.*kept"):
-            run.close(log)
+        monkeypatch.setattr(log_file, "atomic_write", full)
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda frame: True)
+    run.send(Place(10.0, 4.0, "auxetic"))
+    wait(run, lambda frame: frame.grains == 1)
+    end = time.monotonic() + PATIENCE
+    while "it is tried again" not in run.tick():  # the person at the window is told, once
+        assert time.monotonic() < end
+        time.sleep(0.005)
+    assert run.tick() == ""
+    with pytest.raises(InputError, match=r"it.jsonl: No .*kept"):
+        run.close()
     (leftover,) = find(tmp_path / "autosave").leftovers
     assert leftover.grains == 1
 
 
 def test_a_clean_end_writes_the_log_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     order: list[str] = []
-    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02))
+    log = tmp_path / "it.jsonl"
+    run = Panes("mixed", 1, autosave=Autosave(tmp_path / "autosave", 0.02), log=log)
     run.start("workshop", {"grains": 0})
     wait(run, lambda frame: True)
-    write, close = log_file.write_log, Autosave.close
+    close_log, close = GrowingLog.close, Autosave.close
 
-    def noted(log: Path, of: Log) -> None:
+    def noted(one: GrowingLog) -> None:
         order.append("log")
-        write(log, of)
+        close_log(one)
 
     def noted_too(one: Autosave, clean: bool = True) -> None:
         order.append("autosave")
         close(one, clean)
 
-    monkeypatch.setattr("sandbox.window.solvers.panes.write_log", noted)
+    monkeypatch.setattr(GrowingLog, "close", noted)
     monkeypatch.setattr(Autosave, "close", noted_too)
-    run.close(tmp_path / "it.jsonl")
+    run.close()
     assert order == ["log", "autosave"]
-    assert (tmp_path / "it.jsonl").exists()
+    assert read_log(log).end == 0
     assert find(tmp_path / "autosave") == Found()
+
+
+def test_the_log_is_that_of_the_scene_that_runs(tmp_path: Path) -> None:
+    log = tmp_path / "it.jsonl"
+    run = Panes("mixed", 1, autosave=None, log=log)
+    run.start("workshop", {"grains": 0})
+    wait(run, lambda _: log.exists())
+    run.start("single_grain", packings=("regular", "auxetic"))
+    run.send(Protocol(True))
+    wait(run, lambda frame: frame.increment > 3)
+    end = time.monotonic() + PATIENCE
+    while read_log(log).end < 3:  # while it runs
+        assert time.monotonic() < end
+        run.tick()
+        time.sleep(0.02)
+    run.close()
+    last = read_log(log)
+    assert (last.scene, last.packing) == ("single_grain", "regular")
+    assert list(replay(last))[-1].state_hash() == last.hash
 
 
 def test_side_by_side_all_begin_together_from_the_file(run: Panes, tmp_path: Path) -> None:

@@ -15,9 +15,7 @@ from core.errors import InputError
 from sandbox.files.log_file import read_log
 from sandbox.files.scene_file import write_scene
 from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
-from sandbox.session.log import Log
 from sandbox.window import display
-from sandbox.window.solvers import panes
 from sandbox.words import language, words
 from scenes import registry
 from tests.session.test_editing import built
@@ -332,11 +330,11 @@ def test_hint_until_the_first_grab(running: Desk) -> None:
 
 
 def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
-    desk = Desk()
+    desk = Desk(log=tmp_path / "run.jsonl")
     desk.start()
     desk.key(pygame.K_a)
     desk.until(lambda: desk.session.increments > 1)
-    desk.app.close(tmp_path / "run.jsonl")
+    desk.app.close()
     assert read_log(tmp_path / "run.jsonl").end == desk.session.increments
     assert not desk.session.busy
 
@@ -388,20 +386,6 @@ def test_rate_says_what_holds_it_up() -> None:
         rate.drew(0.05)
     rate.renew(3.0, 20.0)
     assert "drawing takes 50 ms" in rate.text
-
-
-def test_log_that_cannot_be_written_is_an_input_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    desk = Desk()
-    desk.start()
-
-    def full(path: Path, log: Log) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(panes, "write_log", full)
-    with pytest.raises(InputError, match="No space left"):
-        desk.app.close(tmp_path / "run.jsonl")
 
 
 @pytest.mark.end_to_end

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -9,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from core.errors import InputError
 from sandbox.files.autosave import Autosave, Leftover
-from sandbox.files.log_file import write_log
+from sandbox.files.growing_log import GrowingLog
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
@@ -57,8 +58,13 @@ class Panes:
         seed: int,
         make: Callable[..., Session] = Session,
         autosave: Autosave | None = None,
+        log: str | os.PathLike[str] | None = None,
     ) -> None:
+        """``log``: where that of the last scene started is written, side by side that of the first packing."""
         self.autosave = autosave
+        self._path = log
+        self._log: GrowingLog | None = None
+        self._trouble = ""  # with it, that was told
         self.packing = packing  # chosen in the menu, for the next scene
         self.curves = Curves()
         self._make = make
@@ -173,7 +179,18 @@ class Panes:
         self._paused_by_menu = False
         self._conductor = Conductor(begins_anew=self._begins_anew)
         self._conductor.set_speed(self._speed)
-        self._panes = [self._pane(*each) for each in zip(kinds, sessions, strict=True)]
+        self._close_log()
+        self._log = None if self._path is None else GrowingLog(self._path)
+        self._panes = [
+            self._pane(kind, session, self._log if kind == wanted.packing else None)
+            for kind, session in zip(kinds, sessions, strict=True)
+        ]
+
+    def _close_log(self) -> None:
+        """Of the scene before: the next takes its place, unless that is never built."""
+        if self._log is not None:
+            with contextlib.suppress(InputError):
+                self._log.close()
 
     def compare(self) -> str:
         """Put the scene's other packings beside the present one, or take them away; returns what to say."""
@@ -235,8 +252,8 @@ class Panes:
                 self._follow(first.frame)
         return self.exists
 
-    def _pane(self, packing: str, session: Session) -> Pane:
-        solver = SolverThread(session, self._conductor)
+    def _pane(self, packing: str, session: Session, log: GrowingLog | None = None) -> Pane:
+        solver = SolverThread(session, self._conductor, None if log is None else log.keep)
         solver.start()
         return Pane(packing, session, solver)
 
@@ -309,23 +326,30 @@ class Panes:
             self._conductor.pause(False)
         self._paused_by_menu = False
 
-    def tick(self) -> None:
-        """Once a picture: what was undone may be a packing, a seed or a setting."""
+    def tick(self) -> str:
+        """Once a picture: what was undone may be a packing, a seed or a setting. Returns what to say, if anything."""
         seen = self.snapshot
         if self.autosave is not None:
             self.autosave.keep(seen.made)
         gone_back = self._gone_back
         if gone_back is not None and seen.serial > gone_back and seen.phase == "running":
             self._follow(seen.frame)
+        return self._new_trouble()
 
-    def close(self, log: str | os.PathLike[str] | None, clean: bool = True) -> bool:
-        """End the threads and write the session's log if one is wanted, side by side that of the first packing.
+    def _new_trouble(self) -> str:
+        """That the log cannot be written, once."""
+        trouble = "" if self._log is None else self._log.trouble
+        known, self._trouble = self._trouble, trouble
+        return words.LOG_TROUBLE.format(reason=trouble) if trouble and not known else ""
+
+    def close(self, clean: bool = True) -> bool:
+        """End the threads and the log.
 
         A ``clean`` end then takes the autosave away. False if a thread is still compiling. Raises InputError if the log cannot be
         written; the autosave stays then.
         """
         try:
-            ended = self._end(log)
+            ended = self._end()
         except InputError as error:
             self._close_autosave(clean=False)
             if self.autosave is None:
@@ -336,22 +360,22 @@ class Panes:
         self._close_autosave(clean)
         return ended
 
-    def _end(self, log: str | os.PathLike[str] | None) -> bool:
-        """End the threads and write the log."""
-        main = self._main
+    def _end(self) -> bool:
+        """End the threads and the log."""
+        main, log = self._main, self._log
         wanted = log is not None and self.snapshot.frame is not None
         others = [pane.solver for pane in self._panes if pane is not main]
         ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
         stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
-        if log is not None and wanted and main is not None:
-            if not ended or main.session.busy:
+        if log is not None:
+            finished = main is not None and wanted and ended and not main.session.busy
+            if main is not None and finished:
+                log.keep(main.session.log())
+            log.close()
+            if wanted and not finished:
                 raise InputError(
-                    f"{os.fspath(log)}: not written, the solver did not come to an end"
+                    f"{log.path}: its last increment is missing, the solver did not come to an end"
                 )
-            try:
-                write_log(log, main.session.log())
-            except OSError as error:
-                raise InputError(f"{os.fspath(log)}: {error.strerror or error}") from error
         return all(stopped) and ended
 
     def _close_autosave(self, clean: bool) -> None:

@@ -12,6 +12,7 @@ import logging
 import math
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
@@ -19,6 +20,7 @@ from core.errors import InputError
 from sandbox.session.beginning import Made
 from sandbox.session.commands import Command
 from sandbox.session.frame import Frame
+from sandbox.session.log import Log
 from sandbox.session.session import Tell
 from sandbox.window.solvers.conductor import Conductor, Turn
 from scenes.text import message
@@ -58,6 +60,9 @@ class SessionLike(Protocol):
     def made(self) -> Made | None:
         """What there is to be kept in a file."""
 
+    def log(self) -> Log:
+        """What was done so far, between two increments."""
+
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
@@ -79,8 +84,15 @@ class _Stopped(Exception):
 class SolverThread:
     """Runs a session until stopped, alone or in step with others."""
 
-    def __init__(self, session: SessionLike, conductor: Conductor) -> None:
+    def __init__(
+        self,
+        session: SessionLike,
+        conductor: Conductor,
+        keep_log: Callable[[Log], None] | None = None,
+    ) -> None:
+        """``keep_log`` is handed what was done after each turn."""
         self._session = session
+        self._keep_log = keep_log
         self.conductor = conductor
         self._member = self.conductor.join()
         self._built = False
@@ -122,8 +134,10 @@ class SolverThread:
         try:
             self._build()
             advanced = False
+            self._tell_log()
             while (turn := self._next_turn(advanced)) is not None:
                 advanced = self._work(turn)
+                self._tell_log()
             self._finish()
         except _Stopped:
             now = self._snapshot
@@ -194,6 +208,10 @@ class SolverThread:
         """A slice of work, when a core is free for it."""
         with self.conductor.core:
             return self._session.advance(SLICE)
+
+    def _tell_log(self) -> None:
+        if self._keep_log is not None and not self._session.busy:
+            self._keep_log(self._session.log())
 
     def _finish(self) -> None:
         """Bring the increment at work to its end: a log ends between increments."""
