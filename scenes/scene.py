@@ -18,9 +18,10 @@ from core import observables
 from core.errors import InputError, nearest
 from core.friction import Friction
 from core.generate import KINDS, Progress, inside
+from core.hand import CELL
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
-from core.rigid import Point
+from core.rigid import Point, RigidBody
 from core.settings import LONGEST_STEP, MACHINE, Settings
 from core.system import System
 from scenes.accuracy import Accuracy, accuracy_of
@@ -92,6 +93,29 @@ class Setup(System):
     )
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
     reach: Callable[[Packing, str, Point], Point] | None = None  # where a handle can go, of a wish
+
+    @property
+    def stroke_label(self) -> str:
+        """What is plotted along: quantity and unit."""
+        return "stroke [R]" if self.curve is None else self.curve.stroke_label
+
+    @property
+    def force_label(self) -> str:
+        """What is plotted against it: quantity and unit."""
+        return self.felt_label if self.curve is None else self.curve.force_label
+
+    @property
+    def felt_label(self) -> str:
+        """What a hand feels, with its unit: the force on the first handle, or what is plotted where that is a periodic cell."""
+        handle = self.handles[0]
+        if handle.body == CELL and self.curve is not None:
+            return self.curve.force_label
+        return Text("force on the {label} [k R]", label=handle.label)
+
+    @property
+    def solids(self) -> tuple[RigidBody, ...]:
+        """The bodies that grains can touch; those that a person has drawn apart."""
+        return tuple(b for b in self.world.bodies if not b.drawn and len(b.primitives()))
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,7 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"
     )
-    record.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_table(record)
     _add_scene_options(record)
     _add_compare(record)
     record.add_argument(
@@ -165,7 +165,7 @@ def _add_replay(command: Command) -> None:
     )
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
-    replay.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    _add_table(replay)
     _add_look(replay)
 
 
@@ -234,6 +234,17 @@ def _add_scene_options(parser: Parser) -> None:
         default=[],
         metavar="NAME=VALUE",
         help="set a parameter of the scene; may be repeated",
+    )
+
+
+def _add_table(parser: Parser) -> None:
+    parser.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
+    parser.add_argument(
+        "--csv",
+        type=argument(arguments.one_of("plain", "excel")),
+        default="plain",
+        metavar="FORM",
+        help="plain (default), or excel: as Excel opens it in the country of --language",
     )
 
 

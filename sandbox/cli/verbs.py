@@ -18,6 +18,7 @@ from sandbox.cli import study as studies
 from sandbox.cli.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
 
 if TYPE_CHECKING:
+    from sandbox.files.table import Spelling
     from sandbox.record.record import Outcome, Output
     from sandbox.session.beginning import SceneFile
     from sandbox.session.session import Session
@@ -178,7 +179,18 @@ def _output(
     arguments.check_different({"--out": film, "--data": table})
     if not (film or table):
         return None
-    return Output(film, table, size, fps, options.view, options.theme, every)
+    if options.csv != "plain" and table is None:
+        raise InputError(f"--csv {options.csv}: there is no table; give --data FILE.csv")
+    return Output(
+        film, table, size, fps, options.view, options.theme, every, _spelling(options.csv)
+    )
+
+
+def _spelling(name: str) -> Spelling:
+    from sandbox.files.table import PLAIN, for_excel
+    from sandbox.words import words
+
+    return for_excel(words.decimal_sign(), words.say) if name == "excel" else PLAIN
 
 
 def _session(options: argparse.Namespace) -> Session:

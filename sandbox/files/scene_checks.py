@@ -93,9 +93,11 @@ def check_history(history: History) -> None:
     reasons = {str(reason) for reason in StopReason} - {str(StopReason.BUDGET)}
     if not set(history.column("stop_reason").tolist()) <= reasons:
         raise InputError("a row of the history ended for a reason that nobody knows")
-    shown = np.concatenate([history.curve.ravel(), history.column("fx"), history.column("fy")])
-    if not np.all(np.isfinite(shown)):
-        raise InputError("the curve of the history must be finite")
+    forces = [history.column(name) for name in ("fx", "fy", "on_drawn_x", "on_drawn_y")]
+    if not np.all(np.isfinite(np.concatenate([history.curve.ravel(), *forces]))):
+        raise InputError("the curve of the history must be finite, and so must its forces")
+    if np.any(np.isinf(history.column("on_solids"))):  # not a number: an older program's rows
+        raise InputError("forces of the history must not be infinite")
 
 
 def _check_going_on(state: State, on: GoingOn) -> None:

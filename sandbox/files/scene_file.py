@@ -122,18 +122,19 @@ def _rows_of(history: History) -> Mapping[str, NDArray[Any]]:
 def _history_of(columns: Mapping[str, NDArray[Any]]) -> History:
     """A history from its columns. What an older program has not measured is as it is by itself."""
     kinds = get_type_hints(Row)
-    letters = {bool: "b", int: "i", float: "fi", str: "U"}  # a number may be whole in all rows
+    # A number may be whole in all rows; the tuples of all rows are a table.
+    letters = {bool: "b", int: "i", float: "fi", str: "U", tuple[float, ...]: "f"}
     known = [f for f in fields(Row) if f.name in columns or f.default is MISSING]
     lists = []
     for field in known:
         column = columns.get(field.name)
         if (
             column is None
-            or column.ndim != 1
+            or column.ndim != 1 + (kinds[field.name] == tuple[float, ...])
             or column.dtype.kind not in letters[kinds[field.name]]
         ):
             raise InputError(f"column {field.name} of the rows is missing, or of another kind")
-        lists.append(column.tolist())
+        lists.append(column.tolist() if column.ndim == 1 else [*map(tuple, column.tolist())])
     if unknown := set(columns) - set(kinds):
         raise InputError(f"the rows have an unknown column {min(unknown)[:80]!r}")
     if len({len(values) for values in lists}) != 1:

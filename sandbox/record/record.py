@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError
 from sandbox.bars import bar_options
-from sandbox.files.table import GrowingTable
+from sandbox.files.table import PLAIN, GrowingTable, Spelling
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
 if TYPE_CHECKING:
     from sandbox.session.frame import Frame
-    from sandbox.session.history import History
     from sandbox.session.log import Log
     from sandbox.session.session import Session
+    from sandbox.session.table import RunTable
 
 # Relaxation steps between two looks at the clock and at Ctrl-C: a fraction of a second.
 SLICE = 400
@@ -38,6 +38,7 @@ class Output:
     view: str = "kind"
     theme: str = "dark"
     every: int = 1  # increments to a frame of the film
+    spelling: Spelling = PLAIN  # of the table
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,9 @@ def run(
     from tqdm import tqdm
 
     film, path = (output.film, output.table) if output else (None, None)
-    table = GrowingTable(path, lambda: _histories(sessions)) if path else None
+    table = (
+        GrowingTable(path, lambda: _tables(sessions), output.spelling) if path and output else None
+    )
     draw = _drawer(output) if output and film else None
     writer = VideoWriter(film, output.size, output.fps) if output and film else None
     increments = 0
@@ -167,8 +170,8 @@ def run(
     return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
 
 
-def _histories(sessions: Sequence[Session]) -> list[tuple[str, History]]:
-    return [(session.packing, session.history) for session in sessions]
+def _tables(sessions: Sequence[Session]) -> list[tuple[str, RunTable]]:
+    return [(session.packing, session.table) for session in sessions]
 
 
 @contextmanager

@@ -305,6 +305,10 @@ def check_fit(setup: Setup, state: State, walls: list[RigidBody]) -> None:
         _check_place(setup, bodies[place.name], place)
     if state.going_on is not None and [p.name for p in state.bodies] != list(bodies):
         raise InputError(f"this scene has the bodies {', '.join(bodies) or 'none'}, in this order")
+    if state.going_on is not None:
+        known = state.going_on.history.column("on_solids").shape[1]
+        if known not in (0, 2 * len(setup.solids)):  # an older program does not know
+            raise InputError("the rows of the history are not of the bodies of this scene")
     if walls:
         _check_walls(setup, state, walls)
 

@@ -114,6 +114,8 @@ class Course:
             )
             left = left_over(unbalanced, report.residual, scale)
             usual, most = estimate.errors(scale, left, max(farthest / setup.solver.step, 1.0))
+        solids = tuple(setup.world.index(body.name) for body in setup.solids)
+        drawn = increment.reactions[len(setup.world.bodies) - len(setup.world.drawn) :, :2].sum(0)
         return Row(
             increment=number,
             stroke=self.stroke,
@@ -129,6 +131,9 @@ class Course:
             force_error=most,
             hand_strength=min(setup.solver.hand_strength, STRONGEST),
             beyond_cone=increment.beyond_cone,
+            on_solids=tuple(increment.reactions[solids, :2].ravel().tolist()),
+            on_drawn_x=float(drawn[0]),
+            on_drawn_y=float(drawn[1]),
         )
 
     def tell_what_stopped(self, setup: Setup, increment: Increment) -> None:

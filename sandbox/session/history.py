@@ -1,11 +1,12 @@
-"""What happened, increment by increment: the columns of the table that is exported."""
+"""What happened, increment by increment."""
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import astuple, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -32,6 +33,10 @@ class Row:
     force_error: float = math.nan
     hand_strength: float = 0.0  # the most that the hand could give [k R], as it is set
     beyond_cone: float = 0.0  # share of contacts that pull harder than friction allows
+    # Forces of the grains on each of ``Setup.solids``, x and y by turns, and on all walls that a person has drawn [k R].
+    on_solids: tuple[float, ...] = ()
+    on_drawn_x: float = 0.0
+    on_drawn_y: float = 0.0
 
     @property
     def magnitude(self) -> float:
@@ -53,24 +58,6 @@ class Event:
     text: str  # plain words
 
 
-_HEADER = (
-    "increment",
-    "stroke [R]",
-    "force on handle x [k R]",
-    "force on handle y [k R]",
-    "grains out",
-    "energy [k R^2]",
-    "relative residual",
-    "FIRE iterations",
-    "stop reason",
-    "force against the drive [k R]",
-    "usual error of the force on the handle, estimated [k R]",
-    "error of the force on the handle that nine of ten stay within, estimated [k R]",
-    "hand strength [k R] (1000: a testing machine)",
-    "share of contacts beyond the friction cone",
-)
-
-
 class History:
     """Rows of all increments since the last reset."""
 
@@ -80,11 +67,11 @@ class History:
         self.events: tuple[Event, ...] = ()  # the newest last
 
     @classmethod
-    def of(cls, rows: Iterable[Iterable[Any]], events: tuple[Event, ...]) -> History:
-        """One with these rows, as ``rows`` gives them, and these events."""
+    def of(cls, rows: Iterable[Row], events: tuple[Event, ...]) -> History:
+        """One with these rows and these events."""
         history = cls()
         for row in rows:
-            history.append(Row(*row))
+            history.append(row)
         history.events = events
         return history
 
@@ -128,14 +115,19 @@ class History:
         count = len(self._rows)
         return float(self._curve[2, count - 1]) / count if count else 0.0
 
-    def header(self) -> list[str]:
-        """Column names with units."""
-        return list(_HEADER)
+    def rows(self, begin: int = 0) -> Iterator[Row]:
+        """One an increment, from that one on."""
+        return itertools.islice(self._rows, begin, None)
 
-    def rows(self) -> Iterator[tuple[float | int | str, ...]]:
-        """One tuple an increment, in the order of the header."""
-        return (astuple(row) for row in self._rows)
+    @property
+    def drawn_upon(self) -> bool:
+        """True if grains have pushed at a wall that a person has drawn."""
+        return any(row.on_drawn_x or row.on_drawn_y for row in self._rows)
 
     def column(self, name: str) -> np.ndarray:
-        """One column (M,), by the attribute's name in ``Row``."""
-        return np.array([getattr(row, name) for row in self._rows])
+        """One column, by the attribute's name in ``Row``: (M,), of ``on_solids`` (M, 2 B)."""
+        values = [getattr(row, name) for row in self._rows]
+        if name != "on_solids":
+            return np.array(values)
+        unknown = (math.nan,) * max(map(len, values), default=0)
+        return np.array([value or unknown for value in values], dtype=np.float64)

@@ -36,6 +36,7 @@ from sandbox.session.frame import Frame
 from sandbox.session.history import History, Row
 from sandbox.session.log import Log
 from sandbox.session.run import Run
+from sandbox.session.table import RunTable
 from sandbox.session.take_frame import take
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
@@ -326,6 +327,11 @@ class Session:
     def history(self) -> History:
         """One row an increment since the last reset."""
         return self.run.history
+
+    @property
+    def table(self) -> RunTable:
+        """The same with the names of its columns."""
+        return RunTable(self.run.setup, self.run.history)
 
     def frame(self) -> Frame:
         """A snapshot that shares nothing with the session."""

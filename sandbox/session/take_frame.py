@@ -15,7 +15,6 @@ from sandbox.session.frame import Ahead, BodyShape, Contacts, Frame, HandleState
 from sandbox.session.history import History
 from sandbox.session.run import Run
 from scenes.scene import Handle
-from scenes.text import Text
 
 
 def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) -> Frame:
@@ -63,8 +62,8 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         curve_stroke=run.history.curve[0],
         curve_force=run.history.curve[1],
         spin=None if run.setup.friction is None else run.setup.friction.spin.copy(),
-        curve_label=_force_label(run),
-        stroke_label="stroke [R]" if curve is None else curve.stroke_label,
+        curve_label=run.setup.force_label,
+        stroke_label=run.setup.stroke_label,
         hand_limit=run.strength if curve is None and math.isfinite(run.strength) else None,
         box=None if box is None else (box.width, box.height, box.shift),
         highlight=None if highlight is None else highlight.copy(),
@@ -82,14 +81,6 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         events=run.history.events,
         ahead=_ahead(run),
     )
-
-
-def _force_label(run: Run) -> str:
-    """What is plotted against the stroke."""
-    curve = run.setup.curve
-    if curve is not None:
-        return curve.force_label
-    return Text("force on the {label} [k R]", label=run.setup.handles[0].label)
 
 
 def _errors(history: History) -> tuple[float, float]:

@@ -11,7 +11,7 @@ from sandbox.draw.views import view_after
 from sandbox.files.scene_file import SUFFIX
 from sandbox.session.commands import Change, Protocol
 from sandbox.window.display import save_picture
-from sandbox.window.export import export, free_stem
+from sandbox.window.export import free_stem
 from sandbox.window.keys import Action, packing_for
 from sandbox.window.menu import Choice
 from sandbox.window.pages import Pages
@@ -113,9 +113,6 @@ class Actions:
             self.change_seed(None)
         elif action is Action.COMPARE:
             self.compare()
-        elif action is Action.EXPORT and frame is not None:
-            frames = [pane[0] for pane in self.stage.picture.panes()]
-            self.stage.toast(export(frames, self.stage.panes.curves.shown(frame)))
         elif (packing := self._packing(action)) is not None:
             self.change_packing(packing)
 

@@ -32,6 +32,7 @@ from sandbox.window.panel.panel import Panel
 from sandbox.window.panel.parameters import ParameterSection, Wishes
 from sandbox.window.panel.scene_files import FilesSection
 from sandbox.window.picture import progress_of
+from sandbox.window.question import ExportQuestion
 from sandbox.window.solvers.panes import Panes
 from sandbox.window.solvers.solver_thread import Snapshot
 from sandbox.window.stage import Stage
@@ -103,6 +104,7 @@ class App:
         self.timeline = Timeline(stage, self.actions)
         self.inspector = Inspector(stage)
         self.brush = Brush(stage)
+        self.question = ExportQuestion(stage)
         arrows = Arrows(stage)
         self.panel = Panel(stage, self.guide, folded={"solver", "files", "looks"})
         self.panel.sections += [
@@ -117,6 +119,7 @@ class App:
         ]
         stage.focus.groups = [arrows.stops, self.guide.stops, self.panel.stops, self.timeline.stops]
         stage.parts = [
+            self.question,
             self.panel,
             self.timeline,
             wishes,
@@ -227,6 +230,7 @@ class App:
         painter = renderer.painter()
         for part in stage.parts_now():
             part.draw(painter)
+        self.question.draw_over(painter)
         painter.flush()
         if snapshot.phase == "failed":
             draw_error(renderer.painter(), words.say(snapshot.error))

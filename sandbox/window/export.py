@@ -15,7 +15,7 @@ from sandbox.draw.plot import draw_plot
 from sandbox.draw.render import curve_of
 from sandbox.draw.text import HEADING, Type
 from sandbox.draw.theme import LIGHT
-from sandbox.files.table import write_csv
+from sandbox.files.table import PLAIN, Spelling, write_csv
 from sandbox.session.frame import Frame
 from sandbox.window.picture import kept_curve
 from sandbox.window.solvers.kept_curves import CurveTable, Kept
@@ -25,14 +25,14 @@ from scenes.text import message
 SIZE, SCALE = (1920, 1080), 2.0  # of the picture [px], and of its letters
 
 
-def export(frames: Sequence[Frame], kept: Sequence[Kept]) -> str:
+def export(frames: Sequence[Frame], kept: Sequence[Kept], spelling: Spelling = PLAIN) -> str:
     """Write table and picture into the current folder, under a name that is still free.
 
     Returns what to tell the person.
     """
     stem = free_stem(f"sandbox-{frames[0].scene}-curves", (".csv", ".png"))
     try:
-        write_csv(f"{stem}.csv", CurveTable(frames, kept))
+        write_csv(f"{stem}.csv", CurveTable(frames, kept), spelling)
     except InputError as error:
         return words.say(message(error))
     picture = io.BytesIO()

@@ -115,8 +115,8 @@ def test_record_writes_film_and_table_and_says_what_came_of_it(tmp_path: Path) -
     assert {
         "increment",
         "stroke [R]",
-        "force on handle x [k R]",
-        "force on handle y [k R]",
+        "force on the piston [k R]",
+        "force of the grains on right wall, x [k R]",
         "grains out",
         "energy [k R^2]",
         "relative residual",
@@ -223,6 +223,10 @@ MISTAKES = {
     "no output": (["record", "hopper"], "--out FILE.mp4"),
     "suffix": (["record", "hopper", "--out", "film.avi"], ".mp4"),
     "suffix of the table": (["record", "hopper", "--data", "run.txt"], ".csv"),
+    "form of no table": (
+        ["record", "hopper", "--out", "a.png", "--csv", "excel"],
+        "--data FILE.csv",
+    ),
     "suffix of the log": (["play", "hopper", "--log", "run.txt"], ".jsonl"),
     "folder": (["record", "hopper", "--out", "nowhere/film.mp4"], "make it first"),
     "size": (["record", "hopper", "--out", "film.mp4", "--size", "641x361"], "even"),

@@ -41,7 +41,7 @@ def test_record_goes_on_with_the_file(folder: Path) -> None:
     while increments < 40:
         increments += session.advance(1000)
     assert state(done.stdout) == session.state_hash()
-    assert float(rows_of(folder / "made.csv")[-1]["force against the drive [k R]"]) >= 0.0
+    assert float(rows_of(folder / "made.csv")[-1]["force on the disc [k R]"]) >= 0.0
 
 
 @pytest.mark.end_to_end

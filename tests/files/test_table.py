@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from core.errors import InputError
 from sandbox.files import table
-from sandbox.files.table import EVERY, GrowingTable, write_csv
+from sandbox.files.table import EVERY, GrowingTable, for_excel, write_csv
 
 
 class Rows:
@@ -43,6 +43,22 @@ def test_values_read_back_to_the_same_bits(tmp_path: Path) -> None:
     assert [float(row[1]) for row in rows] == values
     assert {row[2] for row in rows} == {"iteration limit"}
     assert b"\r" not in path.read_bytes()
+
+
+@pytest.mark.parametrize(("decimal", "separator"), [(".", ","), (",", ";")])
+def test_for_excel_every_country_has_its_own_signs(
+    tmp_path: Path, decimal: str, separator: str
+) -> None:
+    values = [0.1, -1e-300, 1 / 3, math.nan]
+    path = tmp_path / "run.csv"
+    rows = Rows(*((i, value, "a; b, c") for i, value in enumerate(values)))
+    write_csv(path, rows, for_excel(decimal, str.upper))
+    assert path.read_bytes().startswith(b"\xef\xbb\xbf")
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        header, *found = csv.reader(file, delimiter=separator)
+    assert header == ["INCREMENT", "FX [K R]", "STOP_REASON"]
+    assert [float(row[1].replace(decimal, ".") or "nan") for row in found[:-1]] == values[:-1]
+    assert found[-1] == ["3", "", "a; b, c"]
 
 
 class Failing(Rows):
@@ -81,15 +97,16 @@ class Growing:
 
     def __init__(self) -> None:
         self.lines = [Line(0, 0.5)]
+        self.columns = 2
 
     def add(self) -> None:
         self.lines.append(Line(len(self.lines), 1.0 / 3.0))
 
     def header(self) -> list[str]:
-        return ["increment", "value"]
+        return ["increment", "value", "drawn"][: self.columns]
 
-    def rows(self) -> Iterator[tuple[object, ...]]:
-        return (astuple(line) for line in self.lines)
+    def rows(self, begin: int = 0) -> Iterator[tuple[object, ...]]:
+        return ((*astuple(line), 0.0)[: self.columns] for line in self.lines[begin:])
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -115,7 +132,7 @@ def test_a_table_on_the_disk_is_never_far_behind(tmp_path: Path) -> None:
     """Read while it grows, as after kill -9: whole rows, all but those of the last half second."""
     path, history, clock = tmp_path / "run.csv", Growing(), Clock()
     path.write_text("earlier")
-    growing = GrowingTable(path, lambda: [("mixed", history)], clock)
+    growing = GrowingTable(path, lambda: [("mixed", history)], clock=clock)
     assert path.read_text() == "earlier"
     for _ in range(40):
         history.add()
@@ -135,17 +152,18 @@ def test_a_table_on_the_disk_is_never_far_behind(tmp_path: Path) -> None:
 def test_what_is_on_the_disk_is_the_history_wherever_it_goes_back(
     tmp_path_factory: pytest.TempPathFactory, moves: list[int], count: int
 ) -> None:
-    """Rows are added, or somebody goes back some rows, or to the start: afterwards the same bytes as written at once."""
+    """Rows are added, or somebody goes back some rows, or to the start, or a column is new: the same bytes as written at once."""
     path = tmp_path_factory.mktemp("table") / "run.csv"
     histories = [Growing() for _ in range(count)]
     now = [(f"packing {k}", history) for k, history in enumerate(histories)]
     clock = Clock()
-    growing = GrowingTable(path, lambda: now, clock)
+    growing = GrowingTable(path, lambda: now, clock=clock)
     for move in moves:
         for history in histories:
             del history.lines[max(1, len(history) + min(move, 0)) :]
             for _ in range(move):
                 history.add()
+            history.columns = 2 + (move == -2)
         growing.grow()
         clock.now += 1.0
         assert len(lines_of(path)) - 1 == growing.rows == sum(len(h) for h in histories)
@@ -161,7 +179,7 @@ def test_a_full_disk_leaves_whole_rows(tmp_path: Path) -> None:
     import signal
 
     path, history, clock = tmp_path / "run.csv", Growing(), Clock()
-    growing = GrowingTable(path, lambda: [("mixed", history)], clock)
+    growing = GrowingTable(path, lambda: [("mixed", history)], clock=clock)
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     before = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (500, hard))

@@ -14,6 +14,7 @@ from sandbox.session.session import Session
 from scenes import registry
 from scenes.parameter import Parameter
 from scenes.scene import Scene
+from tests.scenes.told import check_table
 
 INCREMENTS = 15
 FEWEST = 60  # grains of a scene whose number is a parameter
@@ -76,6 +77,7 @@ def test_plays(name: str, kind: str) -> None:
     assert len(session.history) > 1
     frame = session.frame()
     assert_finite(frame)
+    check_table(session)
     assert frame.scene == name
     assert frame.packing == kind
     low_x, low_y, high_x, high_y = frame.bounds

@@ -46,10 +46,10 @@ def test_rows_frames_and_tables_carry_the_estimate() -> None:
     mean = float(np.mean([abs(session.history[k].fy) for k in range(len(session.history))]))
     assert frame.usual_error == pytest.approx(newest.usual_error / mean)
     assert frame.force_error == pytest.approx(newest.force_error / mean)
-    usual, most = session.history.header()[-4:-2]
-    assert usual == "usual error of the force on the handle, estimated [k R]"
+    usual, most = session.table.header()[3:5]
+    assert usual == "usual error, estimated: force on the piston [k R]"
     assert "nine of ten" in most
-    assert list(session.history.rows())[-1][-4:-2] == (newest.usual_error, newest.force_error)
+    assert list(session.table.rows())[-1][3:5] == (newest.usual_error, newest.force_error)
 
 
 def test_estimate_is_above_most_errors() -> None:

@@ -177,14 +177,19 @@ def test_curves_are_kept_and_exported(desk: Desk) -> None:
     compare(desk)
     desk.key(pygame.K_r)
     assert [kept.packing for kept in desk.app.stage.panes.curves.of("intruder")] == list(SIDES)
-    for _ in range(2):
+    for answer in (pygame.K_1, pygame.K_2, pygame.K_ESCAPE):
         desk.key(pygame.K_e)
+        desk.key(answer)
+    assert desk.app.stage.running
     names = sorted(path.name for path in Path().iterdir())
     stems = [f"sandbox-intruder-curves-{number}" for number in (1, 2)]
     assert names == [f"{stem}{suffix}" for stem in stems for suffix in (".csv", ".png")]
     assert pygame.image.load(f"{stems[0]}.png").get_size() == (1920, 1080)
     rows = list(csv.DictReader(Path(f"{stems[0]}.csv").read_text().splitlines()))
     assert {row["packing"] for row in rows} == set(SIDES)
+    plain, excel = (Path(f"{stem}.csv").read_bytes() for stem in stems)
+    assert excel.startswith(b"\xef\xbb\xbf")
+    assert excel.count(b"\n") >= plain.count(b"\n") > 1
 
 
 def test_a_film_of_the_window_runs_at_a_constant_rate(desk: Desk) -> None:

@@ -233,6 +233,7 @@ def test_what_a_running_scene_says_is_translated(name: str) -> None:
             pass
     frame = session.frame()
     said = [frame.curve_label, frame.stroke_label, *frame.notices]
+    said += session.table.header()
     said += [handle.label for handle in frame.handles] + [event.text for event in frame.events]
     language.use("de")
     untranslated = [text for text in said if words.say(text) == text]

@@ -125,7 +125,7 @@ def draw_tour_card(
     _draw_dots(painter, rect.left + pad, lowest + round(0.5 * BUTTON * scale), page)
     for name, text in ((NEXT, page.onward), (BACK, words.TOUR_BACK)):
         if name in places.buttons:
-            _draw_button(
+            draw_button(
                 painter,
                 text,
                 places.buttons[name].move(rect.topleft),
@@ -167,9 +167,10 @@ def _draw_dots(painter: Painter, x: float, y: float, page: TourPage) -> None:
         painter.disc(centre, y, (DOT + 1.5 if here else DOT) * scale, colour)
 
 
-def _draw_button(
-    painter: Painter, text: str, rect: pygame.Rect, *, strong: bool, ring: bool, hover: bool
+def draw_button(
+    painter: Painter, text: str, rect: pygame.Rect, *, strong: bool, ring: bool, hover: bool = False
 ) -> None:
+    """A button: ``strong`` is what leads on, ``ring`` what the keyboard is at."""
     scale, theme = painter.scale, painter.theme
     fill = mix(theme.panel, HAND, 0.30) if strong else mix(theme.panel, theme.text, 0.08)
     painter.box(

@@ -143,7 +143,7 @@ class CurveTable:
         """Names of the columns; stroke and force with their units."""
         frame = self._frames[0]
         who = ["curve", "run", "scene", "packing", "seed", "settings", "increment"]
-        return [*who, str(frame.stroke_label), str(frame.curve_label)]
+        return [*who, frame.stroke_label, frame.curve_label]
 
     def rows(self) -> Iterator[tuple[object, ...]]:
         """Curve after curve, the present ones first."""

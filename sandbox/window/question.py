@@ -1,0 +1,85 @@
+"""Asks how the curves are to be written before they are: for programs, or for the Excel of this country."""
+
+from __future__ import annotations
+
+import pygame
+
+from sandbox.draw.pages.question import Asked, draw_question
+from sandbox.draw.painter import Painter
+from sandbox.files.table import PLAIN, Spelling, for_excel
+from sandbox.window.export import export
+from sandbox.window.keys import PACKING_ACTIONS, Action, action_of
+from sandbox.window.parts import Silent
+from sandbox.window.stage import Stage
+from sandbox.words import words
+
+STEPS = {Action.UP: -1, Action.LEFT: -1, Action.DOWN: 1, Action.RIGHT: 1}
+
+
+class ExportQuestion(Silent):
+    """While it is asked all keys and the mouse are for it; the answer of last time comes first."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.asking = False
+        self._place = 0
+        self._answers: list[pygame.Rect] = []
+
+    def act(self, action: Action) -> bool:
+        """The key that asks, and what answers; any other takes the question away and means what it always does."""
+        if not self.asking:
+            if action is Action.EXPORT:
+                self.stage.mouse.release(self.stage.send)
+                self.asking = True
+                self.stage.redraw(True)
+            return self.asking
+        if action in STEPS:
+            self._place = (self._place + STEPS[action]) % 2
+        elif action in PACKING_ACTIONS[:2]:
+            self._answer(PACKING_ACTIONS.index(action))
+        elif action in (Action.ENTER, Action.PAUSE, Action.EXPORT):
+            self._answer(self._place)
+        else:
+            self.asking = False
+            return action is Action.BACK
+        return True
+
+    def handle(self, event: pygame.event.Event) -> bool:
+        """Keys before any other part, and the mouse: an answer, or beside them."""
+        if not self.asking:
+            return False
+        if event.type == pygame.KEYDOWN:
+            if event.key == pygame.K_TAB:
+                return self.act(Action.DOWN)
+            action = action_of(event)
+            return action is not None and self.act(action)
+        if event.type == pygame.MOUSEMOTION:
+            for index, rect in enumerate(self._answers):
+                if rect.collidepoint(event.pos):
+                    self._place = index
+        elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+            hit = [k for k, rect in enumerate(self._answers) if rect.collidepoint(event.pos)]
+            self.asking = False
+            if hit:
+                self._answer(hit[0])
+        return event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
+
+    def _answer(self, place: int) -> None:
+        self.asking, self._place = False, place
+        frames = [pane[0] for pane in self.stage.picture.panes()]
+        shown = self.stage.panes.curves.shown(frames[0])
+        self.stage.toast(export(frames, shown, _spelling(place)))
+
+    def draw_over(self, painter: Painter) -> None:
+        """The card over all other parts, while it asks."""
+        if self.asking:
+            answers = (
+                (words.EXPORT_PLAIN, words.EXPORT_PLAIN_HELP),
+                (words.EXPORT_EXCEL, words.EXPORT_EXCEL_HELP),
+            )
+            asked = Asked(words.EXPORT_ASK, answers, words.EXPORT_WITHOUT)
+            self._answers = draw_question(painter, asked, self._place)
+
+
+def _spelling(place: int) -> Spelling:
+    return for_excel(words.decimal_sign(), words.say) if place else PLAIN
