@@ -92,10 +92,11 @@ def circle_through(start: str) -> list[str]:
 STUDY = "studies.common session draw scenes core"
 ROOMS = {
     "cli": "window studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "studies.common record files session words scenes core",
-    "window": "window.solvers record files draw lessons session words scenes core",
+    "studies.common record player files session words scenes core",
+    "window": "window.solvers record player files draw lessons session words scenes core",
     "window.solvers": "files session words scenes core",
-    "record": "files draw session scenes core",
+    "record": "files player draw session scenes core",
+    "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,
     "studies.stability": STUDY,
     "studies.paper": f"studies.hand {STUDY}",

@@ -129,7 +129,9 @@ def _add_record(command: Command) -> None:
         help="one of the names that `list` prints, or a scene file FILE.scene",
     )
     record.add_argument(
-        "--out", metavar="FILE", help="film (.mp4), animation (.gif) or last frame (.png)"
+        "--out",
+        metavar="FILE",
+        help="film (.mp4), animation (.gif), last frame (.png), or a page that plays the run (.html)",
     )
     _add_table(record)
     _add_scene_options(record)
@@ -155,7 +157,7 @@ def _add_record(command: Command) -> None:
         type=argument(arguments.whole_number(1, 1000)),
         default=1,
         metavar="N",
-        help="a frame for every N increments (default: 1)",
+        help="a frame of the film or page for every N increments (default: 1)",
     )
 
 
@@ -164,7 +166,7 @@ def _add_replay(command: Command) -> None:
         "replay", verbs.replay, "Repeat a logged run; say whether it came out the same."
     )
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
-    replay.add_argument("--out", metavar="FILE", help="film, animation or last frame")
+    replay.add_argument("--out", metavar="FILE", help="film, animation, last frame or page")
     _add_table(replay)
     _add_look(replay)
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from sandbox.session.session import Session
 
 FILM_SUFFIXES = (".mp4", ".gif", ".png")
+PAGE_SUFFIXES = (".html", ".htm")
 
 
 def list_scenes(options: argparse.Namespace) -> int:
@@ -167,23 +168,25 @@ def _output(
     language.use(options.language or language.SOURCE)
     film: Path | None = None
     table: Path | None = None
-    if options.out:
+    page: Path | None = None
+    if options.out and options.out.lower().endswith(PAGE_SUFFIXES):
+        page = arguments.output_file("--out", options.out, PAGE_SUFFIXES)
+    elif options.out:
         from sandbox import environment
 
-        film = arguments.output_file("--out", options.out, FILM_SUFFIXES)
+        film = arguments.output_file("--out", options.out, (*FILM_SUFFIXES, *PAGE_SUFFIXES[:1]))
         arguments.check_fps(fps, film.suffix.lower())
         arguments.check_size(size, film.suffix.lower())
         environment.require_pygame_ce()
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])
-    arguments.check_different({"--out": film, "--data": table})
-    if not (film or table):
+    arguments.check_different({"--out": film or page, "--data": table})
+    if not (film or table or page):
         return None
     if options.csv != "plain" and table is None:
         raise InputError(f"--csv {options.csv}: there is no table; give --data FILE.csv")
-    return Output(
-        film, table, size, fps, options.view, options.theme, every, _spelling(options.csv)
-    )
+    spelling = _spelling(options.csv)
+    return Output(film, table, size, fps, options.view, options.theme, every, spelling, page)
 
 
 def _spelling(name: str) -> Spelling:
@@ -264,6 +267,8 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
         if not outcome.increments:
             return True
     all_hold = True
+    if output and output.page and not outcome.interrupted:
+        print(_page_line(outcome, output))
     for session in sessions:
         print(f"{session.packing}: " * (len(sessions) > 1) + _summary(session, outcome))
         if session.run.locked:
@@ -275,6 +280,13 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
     return all_hold
 
 
+def _page_line(outcome: Outcome, output: Output) -> str:
+    line = f"{outcome.pictures} pictures in {output.page}"
+    if outcome.pictures < outcome.increments // output.every:
+        line += f", of {outcome.increments} increments: a page keeps no more (see --every)"
+    return line
+
+
 def _interrupted(outcome: Outcome, output: Output | None) -> str:
     written = []
     if outcome.frames and output and output.film:
@@ -282,6 +294,8 @@ def _interrupted(outcome: Outcome, output: Output | None) -> str:
         written.append(
             f"{'the last frame' if one else f'{outcome.frames} frames'} to {output.film}"
         )
+    if outcome.pictures and output and output.page:
+        written.append(f"{outcome.pictures} pictures to {output.page}")
     if outcome.increments and output and output.table:
         written.append(f"{outcome.rows} rows to {output.table}")
     what = f"wrote {' and '.join(written)}" if written else "nothing was written"

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
+from sandbox.draw.lamp import lamp
 from sandbox.draw.painter import Painter
-from sandbox.draw.status import draw_lamp, lamp, lamp_space
+from sandbox.draw.status import draw_lamp, lamp_space
 from sandbox.draw.text import BODY, SMALL, Type
 from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.session.frame import Frame

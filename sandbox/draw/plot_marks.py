@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pygame
 
+from sandbox.draw.event_shapes import SHAPES
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
@@ -16,14 +17,6 @@ from sandbox.words import words
 MARK = 6.0  # half the size of an event's mark at scale 1 [px]
 SWATCH = 31.0  # length of the line before a name at scale 1 [px]
 LEADER = 18.0  # room for the thread from a curve's end to its name at scale 1 [px]
-
-# Corners of the marks, the y axis up; an arch points up, an avalanche down, a clog is a block, a locked hand a diamond.
-SHAPES = {
-    "locked": ((0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)),
-    "arch": ((-1.0, -0.8), (1.0, -0.8), (0.0, 1.0)),
-    "avalanche": ((-1.0, 0.8), (0.0, -1.0), (1.0, 0.8)),
-    "clog": ((-0.8, -0.8), (0.8, -0.8), (0.8, 0.8), (-0.8, 0.8)),
-}
 
 Label = tuple[str, bool]  # what stands at a curve's end, and is it an earlier one?
 End = tuple[float, float, int, tuple[float, ...]]  # of a curve: place [px], colour and dash

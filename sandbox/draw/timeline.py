@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pygame
 
+from sandbox.draw.event_shapes import SHAPES
 from sandbox.draw.painter import Painter
-from sandbox.draw.plot_marks import SHAPES
 from sandbox.draw.text import SMALL
 from sandbox.draw.theme import EVENT, mix
 from sandbox.session.history import Event

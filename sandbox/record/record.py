@@ -12,12 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError
+from core.files import atomic_write
 from sandbox.bars import bar_options
 from sandbox.files.table import PLAIN, GrowingTable, Spelling
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
 if TYPE_CHECKING:
+    from sandbox.player.tape import Tape
     from sandbox.session.frame import Frame
     from sandbox.session.log import Log
     from sandbox.session.session import Session
@@ -29,7 +31,7 @@ SLICE = 400
 
 @dataclass(frozen=True)
 class Output:
-    """Where a run is written to; at least one of the two."""
+    """Where a run is written to; at least one of the three."""
 
     film: Path | None
     table: Path | None
@@ -37,8 +39,9 @@ class Output:
     fps: float = 30.0
     view: str = "kind"
     theme: str = "dark"
-    every: int = 1  # increments to a frame of the film
+    every: int = 1  # increments to a frame of the film, or to a picture of the page
     spelling: Spelling = PLAIN  # of the table
+    page: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,7 @@ class Outcome:
     frames: int
     rows: int  # of all packings
     interrupted: bool
+    pictures: int = 0  # of the page
 
 
 NOTHING = Outcome(0, 0, 0, interrupted=True)  # Ctrl-C while grains were packed
@@ -131,6 +135,7 @@ def run(
     table = (
         GrowingTable(path, lambda: _tables(sessions), output.spelling) if path and output else None
     )
+    tape = _begun_tape(sessions, output) if output and output.page else None
     draw = _drawer(output) if output and film else None
     writer = VideoWriter(film, output.size, output.fps) if output and film else None
     increments = 0
@@ -152,6 +157,8 @@ def run(
                         increments += 1
                         if writer and draw and output and increments % output.every == 0:
                             writer.write(draw([session.frame() for session in sessions]))
+                        if tape:
+                            tape.add([session.frame() for session in sessions])
                         bar.update()
                 if table and increments:
                     try:
@@ -164,10 +171,29 @@ def run(
     finally:
         if table and increments and not failed:
             table.finish()
+    if tape and increments and output:
+        _write_page(tape, output)
     if failed:
         raise failed
     rows = sum(len(session.history) for session in sessions)
-    return Outcome(increments, writer.frames if writer else 0, rows, interrupted)
+    pictures = len(tape.moments) if tape else 0
+    return Outcome(increments, writer.frames if writer else 0, rows, interrupted, pictures)
+
+
+def _begun_tape(sessions: Sequence[Session], output: Output) -> Tape:
+    from sandbox.player.tape import Tape
+
+    tape = Tape(every=output.every)
+    tape.add([session.frame() for session in sessions])
+    return tape
+
+
+def _write_page(tape: Tape, output: Output) -> None:
+    from sandbox.player.page import Look, page
+
+    assert output.page is not None
+    with deferred(), atomic_write(output.page) as file:
+        file.write(page(tape, Look(output.theme, output.view)).encode())
 
 
 def _tables(sessions: Sequence[Session]) -> list[tuple[str, RunTable]]:

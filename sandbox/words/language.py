@@ -6,7 +6,8 @@ from __future__ import annotations
 import locale
 import os
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -40,6 +41,26 @@ def use(code: str) -> None:
     if code not in available():
         raise InputError(f"unknown language {code!r}: choose {', '.join(available())}")
     _Present.code = code
+
+
+@contextmanager
+def speaking(code: str) -> Iterator[None]:
+    """Speak that language for a while. Raises InputError for an unknown one."""
+    before = present()
+    use(code)
+    try:
+        yield
+    finally:
+        use(before)
+
+
+def in_each(saying: Callable[[], str]) -> tuple[str, ...]:
+    """What ``saying`` says in every language, in the order of ``available``."""
+    said = []
+    for code in available():
+        with speaking(code):
+            said.append(saying())
+    return tuple(said)
 
 
 def after(code: str) -> str:

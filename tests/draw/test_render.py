@@ -16,9 +16,9 @@ import pygame
 import pytest
 from numpy.typing import NDArray
 
+from sandbox.draw.lamp import lamp
 from sandbox.draw.overlays import Hand
 from sandbox.draw.render import Renderer
-from sandbox.draw.status import lamp
 from sandbox.draw.text import Type
 from sandbox.draw.theme import AUXETIC, DARK, HAND, LIGHT, REGULAR, Theme, channels
 from sandbox.draw.views import VIEWS

@@ -15,10 +15,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sandbox.draw.flashes import FADE, Flashes
+from sandbox.draw.lamp import worst
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import spread
 from sandbox.draw.render import Renderer
-from sandbox.draw.status import worst
 from sandbox.draw.theme import DARK, EVENT, channels
 from sandbox.session.frame import Frame
 from sandbox.session.history import Event

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.relaxation import StopReason
-from sandbox.draw.status import ROUGH, lamp
+from sandbox.draw.lamp import ROUGH, lamp
 from sandbox.draw.theme import DARK
 from sandbox.session.commands import Erase, Protocol
 from sandbox.session.history import History, Row

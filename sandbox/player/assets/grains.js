@@ -1,0 +1,535 @@
+// One packing at one moment: grains, bodies, force chains, handles. It draws what was recorded, nothing is computed anew.
+
+const TURN = 2 * Math.PI;
+const GOLDEN = 0.6180339887498949;
+
+function mix(first, second, share) {
+  const part = (shift) => Math.round(((first >> shift) & 255) + (((second >> shift) & 255) - ((first >> shift) & 255)) * share);
+  return (part(16) << 16) | (part(8) << 8) | part(0);
+}
+
+const css = (colour) => "#" + colour.toString(16).padStart(6, "0");
+
+// World to pixels: the bounds fit into the canvas with a margin.
+function cameraFor(bounds, width, height, margin, scale) {
+  const [x0, y0, x1, y1] = bounds;
+  const k = scale ?? Math.min((width - 2 * margin) / (x1 - x0), (height - 2 * margin) / (y1 - y0));
+  return { k, x: width / 2 - (k * (x0 + x1)) / 2, y: height / 2 + (k * (y0 + y1)) / 2 };
+}
+
+// Where else a thing is seen that reaches `reach` around (x, y) in a periodic cell; the place itself comes first.
+function imagesOf(cell, x, y, reach) {
+  const found = [[x, y]];
+  if (!cell) return found;
+  const rows = cell.high ? [-1, 0, 1] : [0];
+  const columns = cell.wide ? [-2, -1, 0, 1, 2] : [0];
+  for (const row of rows) {
+    for (const column of columns) {
+      if (!row && !column) continue;
+      const ix = x + column * (cell.wide ? cell.width : 0) + (row ? row * (cell.shift % (cell.width || Infinity)) : 0);
+      const iy = y + (row ? row * cell.height : 0);
+      if (cell.wide && (ix + reach < 0 || ix - reach > cell.width)) continue;
+      if (cell.high && (iy + reach < 0 || iy - reach > cell.height)) continue;
+      found.push([ix, iy]);
+    }
+  }
+  return found;
+}
+
+function cellAt(pane, moment) {
+  if (!pane.box) return null;
+  const [width, height, shift] = pane.box.size.subarray(3 * moment, 3 * moment + 3);
+  return { wide: pane.box.wide, high: pane.box.high, width: pane.box.wide ? width : 0, height, shift };
+}
+
+class Scenery {
+  constructor(context, pane, moment, camera, look) {
+    this.g = context;
+    this.pane = pane;
+    this.moment = moment;
+    this.camera = camera;
+    this.look = look; // theme, view, chains, scale [px]
+    this.theme = run.themes[look.theme];
+    this.cell = cellAt(pane, moment);
+    this.line = Math.min(1.5 * look.scale, 0.14 * camera.k);
+  }
+
+  px(x) {
+    return this.camera.x + this.camera.k * x;
+  }
+
+  py(y) {
+    return this.camera.y - this.camera.k * y;
+  }
+
+  draw(width, height) {
+    const g = this.g;
+    g.setTransform(1, 0, 0, 1, 0, 0);
+    g.fillStyle = css(this.theme.ground);
+    g.fillRect(0, 0, width, height);
+    g.save();
+    this.clipToCell(width, height);
+    this.grains();
+    g.restore();
+    this.bodies();
+    g.save();
+    this.clipToCell(width, height);
+    if (this.look.chains || this.look.view.onlyChains) this.chains();
+    this.crosses();
+    g.restore();
+    this.outlineOfCell(width, height);
+    this.handles(width, height);
+  }
+
+  cellRect(width, height) {
+    const { cell } = this;
+    const left = cell.wide ? this.px(0) : 0;
+    const right = cell.wide ? this.px(cell.width) : width;
+    const top = cell.high ? this.py(cell.height) : 0;
+    const bottom = cell.high ? this.py(0) : height;
+    return [left, top, right - left, bottom - top];
+  }
+
+  clipToCell(width, height) {
+    if (!this.cell) return;
+    this.g.beginPath();
+    this.g.rect(...this.cellRect(width, height));
+    this.g.clip();
+  }
+
+  outlineOfCell(width, height) {
+    if (!this.cell) return;
+    const g = this.g;
+    const [x, y, w, h] = this.cellRect(width, height);
+    g.strokeStyle = css(this.theme.soft_text);
+    g.lineWidth = 2 * this.look.scale;
+    g.setLineDash([9 * this.look.scale, 6 * this.look.scale]);
+    g.beginPath();
+    if (this.cell.wide) for (const at of [x, x + w]) g.moveTo(at, y), g.lineTo(at, y + h);
+    if (this.cell.high) for (const at of [y, y + h]) g.moveTo(x, at), g.lineTo(x + w, at);
+    g.stroke();
+    g.setLineDash([]);
+  }
+
+  // -- grains --
+
+  // Every grain that is there, once for each place where it is seen: [index into the series, x and y in pixels].
+  places() {
+    const { pane, moment } = this;
+    const found = [];
+    for (let grain = 0, k = moment * pane.count; grain < pane.count; grain++, k++) {
+      if (!pane.there[k]) continue;
+      const reach = pane.p[k] + Math.hypot(pane.q1[k], pane.q2[k]);
+      for (const [x, y] of imagesOf(this.cell, pane.x[k], pane.y[k], reach)) found.push([k, this.px(x), this.py(y), grain]);
+    }
+    return found;
+  }
+
+  grains() {
+    const { g, pane, look } = this;
+    const places = this.places();
+    const groups = new Map(); // by colour, so that each is filled at once
+    for (const place of places) {
+      const [fill, rim] = this.colours(place[0]);
+      const key = fill * 0x1000000 + rim;
+      if (!groups.has(key)) groups.set(key, [fill, rim, []]);
+      groups.get(key)[2].push(place);
+    }
+    const made = look.view.made;
+    for (const [fill, rim, some] of groups.values()) {
+      const path = new Path2D();
+      for (const place of some) this.ellipse(path, place, -0.5 * this.line);
+      g.fillStyle = css(fill);
+      g.fill(path);
+      if (made) this.holes(some, fill);
+      g.strokeStyle = css(rim);
+      g.lineWidth = made ? 0.5 * this.line : this.line;
+      g.stroke(path);
+      if (pane.rubs) this.radii(made ? some.filter(([k]) => !(pane.nu[k] < 0)) : some, rim, made);
+    }
+    const pointed = places.filter(([k]) => pane.pointed[k]);
+    if (pointed.length) {
+      const path = new Path2D();
+      for (const place of pointed) this.ellipse(path, place, -1.1 * this.line);
+      g.strokeStyle = css(this.theme.event);
+      g.lineWidth = 2.2 * this.line;
+      g.stroke(path);
+    }
+    if (!made) this.signs(places);
+  }
+
+  // Fill and rim of a grain.
+  colours(k) {
+    const { pane, look, theme } = this;
+    const { view } = look;
+    if (view.valued) {
+      const share = MEASURES[view.name](pane, k) / view.top;
+      return [rampColour(theme.ramps[view.ramp], share), mix(theme.hairline, theme.text, 0.25)];
+    }
+    let recede = 0;
+    if (view.onlyChains) recede = 0.85;
+    else if (look.chains) recede = 0.35 * Math.min((20 * look.scale) / this.camera.k, 1);
+    const kind = pane.nu[k] < 0 ? theme.auxetic : theme.regular;
+    return [mix(kind, theme.ground, recede), mix(mix(kind, 0, 0.38), theme.ground, recede)];
+  }
+
+  ellipse(path, [k, x, y], grow) {
+    const { pane, camera } = this;
+    const q = Math.hypot(pane.q1[k], pane.q2[k]);
+    const a = Math.max(camera.k * (pane.p[k] + q) + grow, 0.1);
+    const b = Math.max(camera.k * (pane.p[k] - q) + grow, 0.1);
+    const angle = -0.5 * Math.atan2(pane.q2[k], pane.q1[k]);
+    path.moveTo(x + a * Math.cos(angle), y + a * Math.sin(angle));
+    path.ellipse(x, y, a, b, angle, 0, TURN);
+  }
+
+  // From the grain's own frame, a unit disc turned by `turn`, to pixels: it is stretched as the grain is.
+  frame(k, x, y, turn) {
+    const { pane, camera } = this;
+    const [c, s] = [Math.cos(turn), Math.sin(turn)];
+    const [p, q1, q2] = [pane.p[k], pane.q1[k], pane.q2[k]];
+    return (u, v) => {
+      const [tu, tv] = [c * u - s * v, s * u + c * v];
+      return [x + camera.k * ((p + q1) * tu + q2 * tv), y - camera.k * (q2 * tu + (p - q1) * tv)];
+    };
+  }
+
+  // How far the hole of an auxetic grain is open: 1 at rest, 0 from where a real one has closed.
+  openness(k) {
+    const { pane } = this;
+    const area = (pane.p[k] ** 2 - pane.q1[k] ** 2 - pane.q2[k] ** 2) / pane.rest[k] ** 2;
+    return Math.min(Math.max((area - run.made.closed) / (1 - run.made.closed), 0), 1);
+  }
+
+  // The re-entrant sign of auxetic grains: a bow-tie that closes as they shrink.
+  signs(places) {
+    const { g, pane, camera } = this;
+    const path = new Path2D();
+    for (const [k, x, y] of places) {
+      const smallest = camera.k * (pane.p[k] - Math.hypot(pane.q1[k], pane.q2[k]));
+      if (!(pane.nu[k] < 0) || smallest < 1.5) continue;
+      const [opened, slit] = [this.openness(k), 0.55 / smallest];
+      const [waist, end, h] = [Math.max(0.1 * opened, slit), Math.max(0.46 * opened, slit), 0.52];
+      const at = this.frame(k, x, y, pane.spin[k]);
+      polygon(path, [[end, h], [waist, 0], [end, -h], [-end, -h], [-waist, 0], [-end, h]].map(([u, v]) => at(u, v)));
+    }
+    g.fillStyle = css(this.theme.ground);
+    g.fill(path);
+  }
+
+  // Grains as they are made: rings, and discs with a re-entrant hole, a wedge from the rim, and a tooth that bars it.
+  holes(some, fill) {
+    const { g, pane, camera } = this;
+    const { wall, tip, wing, notch, hinge, mouth, tooth } = run.made;
+    const [open, bars] = [new Path2D(), new Path2D()];
+    for (const place of some) {
+      const [k, x, y, grain] = place;
+      const stretch = Math.hypot(pane.q1[k], pane.q2[k]);
+      const smallest = camera.k * (pane.p[k] - stretch);
+      if (!(pane.nu[k] < 0)) {
+        if (smallest > camera.k * wall * pane.rest[k]) this.ellipse(open, place, -camera.k * wall * pane.rest[k]);
+        continue;
+      }
+      const opened = this.openness(k);
+      const slit = 0.45 / smallest;
+      const top = Math.min(notch[1] + (notch[0] - notch[1]) * opened, tip - 3 * slit);
+      const wide = Math.max(mouth * opened, slit);
+      const at = this.frame(k, x, y, pane.spin[k] + TURN * ((GOLDEN * pane.labels[grain]) % 1));
+      polygon(open, [[0, tip], [wing[0], wing[1]], [0, top], [-wing[0], wing[1]]].map(([u, v]) => at(u, v)));
+      polygon(open, [[0, top - hinge], [wide, -1.02], [-wide, -1.02]].map(([u, v]) => at(u, v)));
+      if (smallest < 9 * this.look.scale) continue;
+      const thick = (tooth.thick * pane.rest[k]) / pane.p[k];
+      const end = mouth * opened;
+      polygon(open, rimStrip(-tooth.long - 0.08, 0, thick + tooth.gap).map(([u, v]) => at(u, v)));
+      polygon(bars, rimStrip(end - tooth.long, end + 0.15, thick).map(([u, v]) => at(u, v)));
+    }
+    g.fillStyle = css(this.theme.ground);
+    g.fill(open);
+    g.fillStyle = css(fill);
+    g.fill(bars);
+  }
+
+  // A radius that turns with each grain.
+  radii(some, rim, made) {
+    const { g, pane, camera } = this;
+    const path = new Path2D();
+    for (const [k, x, y] of some) {
+      if (camera.k * pane.p[k] < 5.5 * this.look.scale) continue;
+      const at = this.frame(k, x, y, pane.spin[k]);
+      const start = made ? 1 - 0.8 * run.made.wall : pane.nu[k] < 0 ? 0.55 : 0;
+      path.moveTo(...at(start, 0));
+      path.lineTo(...at(0.9, 0));
+    }
+    g.strokeStyle = css(rim);
+    g.lineWidth = 1.6 * this.look.scale;
+    g.stroke(path);
+  }
+
+  // A cross on every grain that is squeezed further than a real one could be.
+  crosses() {
+    const { g, pane, look, camera } = this;
+    const path = new Path2D();
+    for (const [k, x, y] of this.places()) {
+      if (!pane.squeezed[k]) continue;
+      const arm = Math.min(Math.max(0.4 * pane.p[k] * camera.k, 3.5 * look.scale), 9 * look.scale);
+      path.moveTo(x - arm, y - arm);
+      path.lineTo(x + arm, y + arm);
+      path.moveTo(x - arm, y + arm);
+      path.lineTo(x + arm, y - arm);
+    }
+    g.lineCap = "round";
+    for (const [width, colour] of [[5, this.theme.ground], [2.2, this.theme.text]]) {
+      g.strokeStyle = css(colour);
+      g.lineWidth = width * look.scale;
+      g.stroke(path);
+    }
+  }
+
+  // -- forces --
+
+  chains() {
+    const { g, pane, moment, look, camera, theme } = this;
+    const base = moment * pane.count;
+    const forces = pane.bearing.subarray(moment * pane.pairs, (moment + 1) * pane.pairs);
+    const active = pane.active[moment];
+    if (!active.length) return;
+    let mean = 0;
+    for (const pair of active) mean += forces[pair] / active.length;
+    const BINS = 24;
+    const bins = Array.from({ length: BINS }, () => null);
+    for (const pair of active) {
+      const bin = Math.min(Math.floor(Math.sqrt(forces[pair] / run.tops.chains) * BINS), BINS - 1);
+      const path = (bins[bin] ??= new Path2D());
+      for (const [x0, y0, x1, y1] of this.contact(pair, base)) {
+        path.moveTo(this.px(x0), this.py(y0));
+        path.lineTo(this.px(x1), this.py(y1));
+      }
+    }
+    const plain = look.view.valued; // there the colour says something else
+    const widest = Math.min(0.62 * camera.k, 13 * look.scale) * (plain ? 0.6 : 1);
+    const clip = (value) => Math.min(Math.max(value, 0), 1);
+    g.lineCap = "round";
+    for (const rimmed of plain ? [true, false] : [false]) {
+      bins.forEach((path, bin) => {
+        if (!path) return;
+        const share = ((bin + 0.5) / BINS) ** 2;
+        const force = share * run.tops.chains;
+        g.globalAlpha = Math.min(clip((force / mean - 0.3) / 0.7), clip((share - 0.004) / 0.056));
+        g.lineWidth = widest * Math.sqrt(share) + (rimmed ? 2 * look.scale : 0);
+        g.strokeStyle = css(rimmed ? theme.ground : plain ? theme.text : rampColour(theme.ramps.chains, share));
+        g.stroke(path);
+      });
+    }
+    g.globalAlpha = 1;
+  }
+
+  // The lines of a contact [R]: two where it leaves a periodic cell on one side and comes in on the other.
+  contact(pair, base) {
+    const { pane, cell, moment } = this;
+    const first = base + pane.i[pair];
+    const [x, y] = [pane.x[first], pane.y[first]];
+    if (pane.j[pair] < 0) {
+      const k = moment * pane.withBodies + pair - (pane.pairs - pane.withBodies);
+      return imagesOf(cell, x, y, 1).map(([ix, iy]) => [ix, iy, ix + pane.dx[k], iy + pane.dy[k]]);
+    }
+    const second = base + pane.j[pair];
+    let [dx, dy] = [pane.x[second] - x, pane.y[second] - y];
+    if (!cell) return [[x, y, x + dx, y + dy]];
+    if (cell.high) {
+      const rows = Math.round(dy / cell.height);
+      dx -= rows * cell.shift;
+      dy -= rows * cell.height;
+    }
+    if (cell.wide) dx -= Math.round(dx / cell.width) * cell.width;
+    const direct = [x, y, x + dx, y + dy];
+    const [ox, oy] = [pane.x[second], pane.y[second]];
+    return Math.hypot(x + dx - ox, y + dy - oy) < 1e-3 ? [direct] : [direct, [ox, oy, ox - dx, oy - dy]];
+  }
+
+  // -- bodies and handles --
+
+  bodies() {
+    const there = this.pane.bodies.filter((body) => body.there[this.moment]);
+    for (const body of there) if (body.role === "wall") this.body(body);
+    for (const body of there) if (body.role !== "wall") this.body(body);
+  }
+
+  body(body) {
+    const { g, theme, look, camera } = this;
+    const colour = theme[body.role] ?? theme.intruder;
+    const edge = mix(colour, look.theme === "dark" ? theme.text : 0, 0.25);
+    const numbers = body.shape.subarray(this.moment * body.columns, (this.moment + 1) * body.columns);
+    const width = body.role === "wall" ? 0 : this.line;
+    g.lineCap = "round";
+    for (const [less, paint] of width ? [[0, edge], [width, colour]] : [[0, colour]]) {
+      g.fillStyle = g.strokeStyle = css(paint);
+      let at = 0;
+      for (let disc = 0; disc < body.discs; disc++, at += 3) {
+        g.beginPath();
+        g.arc(this.px(numbers[at]), this.py(numbers[at + 1]), Math.max(camera.k * numbers[at + 2] - less, 0), 0, TURN);
+        g.fill();
+      }
+      for (let line = 0; line < body.segments; line++, at += 5) {
+        g.lineWidth = 2 * Math.max(Math.max(camera.k * numbers[at + 4], look.scale) - less, 0.5);
+        g.beginPath();
+        g.moveTo(this.px(numbers[at]), this.py(numbers[at + 1]));
+        g.lineTo(this.px(numbers[at + 2]), this.py(numbers[at + 3]));
+        g.stroke();
+      }
+      for (const corners of body.polygons) {
+        const path = new Path2D();
+        const points = [];
+        for (let corner = 0; corner < corners; corner++, at += 2) points.push([this.px(numbers[at]), this.py(numbers[at + 1])]);
+        polygon(path, points);
+        g.fill(path);
+        if (width && paint === colour) {
+          g.strokeStyle = css(edge);
+          g.lineWidth = width;
+          g.stroke(path);
+          g.strokeStyle = css(paint);
+        }
+      }
+    }
+  }
+
+  handles(width, height) {
+    const scale = Math.min(this.look.scale, Math.min(width, height) / 260);
+    for (const handle of this.pane.handles) {
+      const [x, y, tx, ty] = handle.at.subarray(4 * this.moment, 4 * this.moment + 4);
+      const at = [this.px(x), this.py(y)];
+      this.tautLine(at, [this.px(tx), this.py(ty)], scale);
+      this.knob(at, handle.axis, scale);
+    }
+    for (const handle of this.pane.handles) this.push(handle, scale, width, height);
+  }
+
+  tautLine(here, there, scale) {
+    const { g } = this;
+    if (Math.hypot(here[0] - there[0], here[1] - there[1]) < 2 * scale) return;
+    for (const [width, colour] of [[4.5, this.theme.ground], [2, this.theme.hand]]) {
+      g.strokeStyle = css(colour);
+      g.lineWidth = width * scale;
+      g.beginPath();
+      g.moveTo(...here);
+      g.lineTo(...there);
+      g.stroke();
+    }
+  }
+
+  knob([x, y], axis, scale) {
+    const { g, theme } = this;
+    const size = 11 * scale;
+    for (const [radius, colour] of [[size + 2 * scale, theme.ground], [size, mix(theme.hand, 0, 0.3)], [size - 1.5 * scale, theme.hand]]) {
+      g.fillStyle = css(colour);
+      g.beginPath();
+      g.arc(x, y, radius, 0, TURN);
+      g.fill();
+    }
+    const ways = axis ? [axis, [-axis[0], -axis[1]]] : [[1, 0], [0, 1], [-1, 0], [0, -1]];
+    const path = new Path2D();
+    for (const [wx, wy] of ways) {
+      const [bx, by, sx, sy] = [x + 0.36 * size * wx, y - 0.36 * size * wy, -wy * 0.36 * size, -wx * 0.36 * size];
+      polygon(path, [[x + 0.78 * size * wx, y - 0.78 * size * wy], [bx + sx, by + sy], [bx - sx, by - sy]]);
+    }
+    g.fillStyle = "#101418";
+    g.fill(path);
+  }
+
+  // An arrow along the force of the hand, and its size.
+  push(handle, scale, width, height) {
+    const { g, theme } = this;
+    const [x, y] = [this.px(handle.at[4 * this.moment]), this.py(handle.at[4 * this.moment + 1])];
+    const [fx, fy] = handle.force.subarray(2 * this.moment, 2 * this.moment + 2);
+    const size = Math.hypot(fx, fy);
+    if (size < 0.005 * run.tops.hand) return;
+    const [wx, wy] = [fx / size, -fy / size];
+    const [start, long, head] = [17 * scale, Math.min(size / run.tops.hand, 1.2) * 96 * scale, 13 * scale];
+    const neck = [x + (start + long) * wx, y + (start + long) * wy];
+    const tip = [neck[0] + head * wx, neck[1] + head * wy];
+    const side = [-wy * 0.62 * head, wx * 0.62 * head];
+    const arrow = new Path2D();
+    polygon(arrow, [tip, [neck[0] + side[0], neck[1] + side[1]], [neck[0] - side[0], neck[1] - side[1]]]);
+    g.lineCap = "butt";
+    for (const [wide, colour] of [[9, theme.ground], [5, theme.hand]]) {
+      g.strokeStyle = g.fillStyle = css(colour);
+      g.lineWidth = wide * scale;
+      g.beginPath();
+      g.moveTo(x + start * wx, y + start * wy);
+      g.lineTo(...neck);
+      g.stroke();
+      if (wide === 9) {
+        g.lineWidth = 4 * scale;
+        g.stroke(arrow);
+      }
+      g.fill(arrow);
+    }
+    const text = `${number(size, decimalsFor(run.tops.hand) + 2)} k R`;
+    const letters = 15 * Math.max(scale, 0.8 * this.look.scale);
+    g.font = `600 ${letters}px ${FONT}`;
+    const [w, h] = [g.measureText(text).width + letters, 1.5 * letters];
+    const away = 0.5 * (w * Math.abs(wx) + h * Math.abs(wy)) + 5 * scale;
+    const cx = Math.min(Math.max(tip[0] + away * wx, w / 2 + 2), width - w / 2 - 2);
+    let cy = Math.min(Math.max(tip[1] + away * wy, h / 2 + 2), height - h / 2 - 2);
+    if (Math.abs(cx - x) < w / 2 + start && Math.abs(cy - y) < h / 2 + start) cy = y > height / 2 ? h / 2 + 2 : height - h / 2 - 2;
+    g.beginPath();
+    g.roundRect(cx - w / 2, cy - h / 2, w, h, 6 * scale);
+    g.fillStyle = css(theme.panel);
+    g.fill();
+    g.strokeStyle = css(theme.hand);
+    g.lineWidth = 1.5 * scale;
+    g.stroke();
+    g.fillStyle = css(theme.text);
+    g.textAlign = "center";
+    g.textBaseline = "middle";
+    g.fillText(text, cx, cy);
+  }
+
+  // A ring round the grain that is looked at.
+  ring(grain) {
+    const k = this.moment * this.pane.count + grain;
+    if (!this.pane.there[k]) return;
+    const path = new Path2D();
+    for (const [x, y] of imagesOf(this.cell, this.pane.x[k], this.pane.y[k], this.pane.p[k])) {
+      this.ellipse(path, [k, this.px(x), this.py(y)], 3 * this.look.scale);
+    }
+    for (const [width, colour] of [[7, this.theme.ground], [3.5, this.theme.text]]) {
+      this.g.strokeStyle = css(colour);
+      this.g.lineWidth = width * this.look.scale;
+      this.g.stroke(path);
+    }
+  }
+}
+
+function polygon(path, points) {
+  points.forEach(([x, y], k) => (k ? path.lineTo(x, y) : path.moveTo(x, y)));
+  path.closePath();
+}
+
+// A strip along the rim of the unit disc at its foot, from u0 to u1 and that thick.
+function rimStrip(u0, u1, thick) {
+  const points = [];
+  const at = (u, radius) => [u, -Math.sqrt(Math.max(radius * radius - u * u, 0))];
+  for (let k = 0; k <= 6; k++) points.push(at(u0 + ((u1 - u0) * k) / 6, 1.01));
+  for (let k = 6; k >= 0; k--) points.push(at(u0 + ((u1 - u0) * k) / 6, 1 - thick));
+  return points;
+}
+
+function rampColour(ramp, share) {
+  return ramp[Math.round(Math.min(Math.max(share, 0), 1) * (ramp.length - 1))];
+}
+
+// The grain that covers a place [R]; −1: none.
+function grainAt(pane, moment, x, y) {
+  const cell = cellAt(pane, moment);
+  let [best, nearest] = [-1, 1];
+  for (let grain = 0, k = moment * pane.count; grain < pane.count; grain++, k++) {
+    if (!pane.there[k]) continue;
+    const [p, q1, q2] = [pane.p[k], pane.q1[k], pane.q2[k]];
+    for (const [ix, iy] of imagesOf(cell, pane.x[k], pane.y[k], p + Math.hypot(q1, q2))) {
+      const [dx, dy, area] = [x - ix, y - iy, p * p - q1 * q1 - q2 * q2];
+      const inside = Math.hypot(((p - q1) * dx - q2 * dy) / area, ((p + q1) * dy - q2 * dx) / area);
+      if (inside <= nearest) [best, nearest] = [grain, inside];
+    }
+  }
+  return best;
+}

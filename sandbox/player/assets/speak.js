@@ -1,0 +1,47 @@
+// Words and numbers in the present language.
+
+const FINER = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
+let language = 0; // place in run.languages
+let run; // the recording
+
+// A text that is there in every language.
+const say = (said) => said[language];
+
+// A word of the page, with its values.
+function word(key, values = {}) {
+  const text = run.words[language][key] ?? key;
+  return text.replace(/\{(\w+)\}/g, (_, name) => values[name] ?? "");
+}
+
+function number(value, decimals) {
+  if (!Number.isFinite(value)) return "—";
+  let text = value.toFixed(decimals);
+  if (Number(text) === 0) text = text.replace("-", "");
+  return text.replace("-", "−").replace(".", run.words[language].decimal);
+}
+
+// As many digits as tell values apart that differ by a hundredth of the spread.
+function decimalsFor(spread) {
+  if (!(spread > 0)) return 0;
+  return Math.min(Math.max(0, -Math.floor(Math.log10(spread) + 1e-9)), 9);
+}
+
+function roundUp(value, steps = [1, 2, 5, 10]) {
+  if (!(value > 0) || !Number.isFinite(value)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  return (steps.find((step) => value <= step * power * (1 + 1e-9)) ?? 10) * power;
+}
+
+function ticks(low, high, most) {
+  if (!(high > low)) return [];
+  const step = roundUp((high - low) / Math.max(most, 1));
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); k++) found.push(k * step);
+  return found;
+}
+
+// A name and its unit: "stroke [R]".
+function labelParts(label) {
+  const found = /^(.*) \[(.*)\]$/.exec(label);
+  return found ? [found[1], found[2]] : [label, ""];
+}

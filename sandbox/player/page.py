@@ -1,0 +1,218 @@
+"""The page itself: markup, style, script and recording in one file that asks for nothing."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from core.squeezed import AUXETIC_AREA, MOUTH, NOTCH, RING_WALL, TIP, WING
+from sandbox import __version__
+from sandbox.draw import views
+from sandbox.draw.event_shapes import SHAPES
+from sandbox.draw.raster import made_grains
+from sandbox.draw.theme import (
+    AUXETIC,
+    EVENT,
+    HAND,
+    REGULAR,
+    THEMES,
+    Theme,
+    magnitude_colours,
+    mix,
+    packing_colour,
+    packing_dash,
+)
+from sandbox.player.recording import recording
+from sandbox.player.story import PLAYER, story
+from sandbox.player.tape import Tape
+from sandbox.words import language, words
+from sandbox.words.language import available, in_each, speaking
+
+SCRIPTS = ("unpack.js", "speak.js", "grains.js", "plot.js", "inspect.js", "player.js")
+SHADES = 64  # of a colour map
+# Words of the window that the page says too.
+SHARED = (
+    *("grain_label", "grain_ratio", "grain_axes", "grain_angle", "grain_rest", "grain_area"),
+    *("grain_pressure", "grain_contacts", "grain_total", "grain_unbalanced", "grain_wall"),
+    *("grain_other", "grains_out", "hand_limit", "panel_packing"),
+)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a page begins; whoever looks at it may choose otherwise."""
+
+    theme: str = "dark"
+    view: str = "kind"
+    language: str = ""  # the present one, if none is named
+    play: bool = True  # by itself, where the computer does not ask for little motion
+    above: str = ""  # markup before the player, and after it
+    below: str = ""
+    style: str = ""  # for that markup
+
+
+def page(tape: Tape, look: Look | None = None) -> str:
+    """The HTML text of a run, or of several side by side. Raises InputError for an empty tape, or an unknown view or language.
+
+    Belongs to the thread that draws, as it speaks every language for a moment.
+    """
+    look = look or Look()
+    views.view_named(look.view)
+    first = tape.last[0] if tape.last else None
+    recorded = base64.b64encode(recording(tape)).decode("ascii")
+    assert first is not None
+    titles = {
+        "title": in_each(lambda: words.title(first.scene, first.title)),
+        "question": in_each(lambda: words.question(first.scene)),
+    }
+    begins = {"view": look.view, "play": look.play}
+    script = (
+        f'"use strict";\nconst PAGE = {_json(_about() | titles | {"start": begins})};\n'
+        + "\n".join(_asset(name) for name in SCRIPTS)
+    )
+    code = look.language or language.present()
+    with speaking(code):
+        at = available().index(code)
+        values = {
+            "language": code,
+            "theme": look.theme,
+            "policy": policy(script),
+            "version": __version__,
+            "title": html.escape(titles["title"][at]),
+            "question": html.escape(titles["question"][at]),
+            "style": "\n".join(
+                [*map(_variables, THEMES.values()), _asset("player.css"), look.style]
+            ),
+            "story": _stories(tape, code),
+            "noscript": html.escape(PLAYER["noscript"]),
+            "above": look.above,
+            "below": look.below,
+            "script": script,
+            "recording": recorded,
+        }
+    return filled(_asset("player.html"), values)
+
+
+def filled(template: str, values: dict[str, str]) -> str:
+    """A template with its ``{{names}}`` replaced, each piece once and what is put in left alone."""
+    parts = []
+    for part in template.split("{{"):
+        name, end, rest = part.partition("}}")
+        parts.append(values[name] + rest if end and name in values else part)
+    return "".join(parts)
+
+
+def policy(script: str) -> str:
+    """What the page may do: run its own script, and nothing from outside."""
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
+    return (
+        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
+        "img-src data:; base-uri 'none'; form-action 'none'"
+    )
+
+
+def _asset(name: str) -> str:
+    return (files("sandbox.player") / "assets" / name).read_text(encoding="utf-8")
+
+
+def _json(value: Any) -> str:
+    """JSON that cannot end the script it stands in."""
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+
+
+def _stories(tape: Tape, shown: str) -> str:
+    """What happened, in every language; one of them is shown."""
+    told = []
+    for code in available():
+        with speaking(code):
+            paragraphs = "".join(f"<p>{html.escape(text)}</p>" for text in story(tape))
+        hidden = "" if code == shown else " hidden"
+        told.append(f'<div data-story lang="{code}"{hidden}>{paragraphs}</div>')
+    return "".join(told)
+
+
+def _about() -> dict[str, Any]:
+    """What is the same for every run: words, colours, signs."""
+    return {
+        "words": [_words(code) for code in available()],
+        "keys": [language.table(code)["player_keys"]["keys"] for code in available()],
+        "themes": {name: _theme(theme) for name, theme in THEMES.items()},
+        "packings": {
+            name: {"colour": packing_colour(name), "dash": packing_dash(name)}
+            for name in ("regular", "auxetic", "mixed")
+        },
+        "shapes": SHAPES,
+        "made": {
+            "closed": AUXETIC_AREA,
+            "wall": RING_WALL,
+            "tip": TIP,
+            "wing": (WING, made_grains.WING_V),
+            "notch": (NOTCH, made_grains.NOTCH_CLOSED),
+            "hinge": made_grains.HINGE,
+            "mouth": MOUTH,
+            "tooth": {
+                "long": made_grains.TOOTH_LONG,
+                "thick": made_grains.TOOTH_THICK,
+                "gap": made_grains.POCKET_GAP,
+            },
+        },
+    }
+
+
+def _words(code: str) -> dict[str, str]:
+    """All that the script says in a language."""
+    table = language.table(code)
+    said: dict[str, str] = {"name": table["name"], "decimal": table["decimal"], **table["player"]}
+    said |= {name: table["words"][name] for name in SHARED}
+    said |= {f"event_{kind}": text for kind, text in table["events"].items()}
+    said |= {f"kind_{kind}": text for kind, text in table["kinds_short"].items()}
+    said |= {f"kinds_{kind}": text for kind, text in table["kinds"].items()}
+    return said
+
+
+def _theme(theme: Theme) -> dict[str, Any]:
+    """Colours as numbers, and those of magnitudes."""
+    share = np.linspace(0.0, 1.0, SHADES)
+    ramps = {
+        "chains": magnitude_colours(theme, share),
+        "fill": views.fill_colours(theme, share),
+        "fringes": views.fringe_colours(theme, share),
+    }
+    names = ("ground", "panel", "hairline", "text", "soft_text", "wall", "piston", "intruder")
+    return {
+        **{name: getattr(theme, name) for name in names},
+        "regular": REGULAR,
+        "auxetic": AUXETIC,
+        "event": EVENT,
+        "hand": HAND,
+        "dark": theme.name == "dark",
+        "ramps": {name: colours.tolist() for name, colours in ramps.items()},
+    }
+
+
+def _variables(theme: Theme) -> str:
+    """The colours of a theme for the style."""
+    dark = theme.name == "dark"
+    colours = {
+        **{name: getattr(theme, name) for name in ("ground", "panel", "hairline", "text")},
+        **{name: getattr(theme, name) for name in ("good", "working", "bad")},
+        "soft": theme.soft_text,
+        "hand": HAND,
+        "edge": mix(theme.panel, theme.text, 0.45),
+        "pressed": mix(theme.panel, theme.text, 0.16),
+        "event": EVENT if dark else mix(EVENT, 0x000000, 0.35),
+        "focus": 0xFFD34D if dark else 0x0B57D0,
+    }
+    return f'html[data-theme="{theme.name}"] {{ {_declared(colours.items())} }}'
+
+
+def _declared(colours: Iterable[tuple[str, int]]) -> str:
+    return " ".join(f"--{name}: #{colour:06x};" for name, colour in colours)

@@ -1,0 +1,71 @@
+"""What is kept of a run while it goes on: of one packing, or of several side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sandbox.player.kept import Kept, keep
+from sandbox.session.frame import Frame
+
+MOST_MOMENTS = 800
+MOST_GRAINS = 240_000  # grains times moments: some 12 MB of memory, and 1.5 MB of page
+
+Moment = tuple[Kept, ...]  # side by side
+
+
+class Tape:
+    """Grows with the run; beyond its budget it keeps every second moment only, then every fourth, and the last one always.
+
+    A run that goes back, by undo, reset or a look at an earlier increment, goes on from there: what came later is forgotten.
+    """
+
+    def __init__(
+        self, every: int = 1, most_moments: int = MOST_MOMENTS, most_grains: int = MOST_GRAINS
+    ) -> None:
+        self._asked, self._most = every, (most_moments, most_grains)
+        self._kept: list[Moment] = []
+        self._latest: Moment | None = None
+        self.every = every  # increments from one moment to the next
+        self.last: tuple[Frame, ...] = ()  # what was added last
+
+    def add(self, frames: Sequence[Frame]) -> None:
+        """The state at the start, or after an increment: a frame of each packing, always in the same order."""
+        moment = tuple(keep(frame) for frame in frames)
+        now = _increment(moment)
+        while self._kept and _increment(self._kept[-1]) >= now:
+            self._kept.pop()
+        if not self._kept:
+            self.every = self._asked
+        self.last, self._latest = tuple(frames), moment
+        if now % self.every == 0 or not self._kept:
+            self._kept.append(moment)
+        self._thin()
+
+    @property
+    def moments(self) -> list[Moment]:
+        """All that is kept, in order; the latest is always there."""
+        latest = [self._latest] if self._latest is not None else []
+        return self._kept if latest == self._kept[-1:] else self._kept + latest
+
+    @property
+    def increments(self) -> int:
+        """How many there were."""
+        return 0 if self._latest is None else _increment(self._latest)
+
+    @property
+    def thinned(self) -> bool:
+        """Has the budget been too small for all that was asked for?"""
+        return self.every > self._asked
+
+    def _thin(self) -> None:
+        grains = max(sum(kept.size for kept in moment) for moment in self._kept[-1:])
+        most = max(min(self._most[0], self._most[1] // max(grains, 1)), 2)
+        while len(self._kept) > most:
+            self.every *= 2
+            later = (m for m in self._kept[1:] if _increment(m) % self.every == 0)
+            self._kept = [self._kept[0], *later]
+
+
+def _increment(moment: Moment) -> int:
+    """Where the packing stands that has come furthest."""
+    return max(kept.increment for kept in moment)
