@@ -133,7 +133,7 @@ def _add_record(command: Command) -> None:
         metavar="FILE",
         help="film (.mp4), animation (.gif), last frame (.png), or a page that plays the run (.html)",
     )
-    _add_table(record)
+    _add_data(record)
     _add_scene_options(record)
     _add_compare(record)
     record.add_argument(
@@ -167,7 +167,7 @@ def _add_replay(command: Command) -> None:
     )
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation, last frame or page")
-    _add_table(replay)
+    _add_data(replay)
     _add_look(replay)
 
 
@@ -239,7 +239,7 @@ def _add_scene_options(parser: Parser) -> None:
     )
 
 
-def _add_table(parser: Parser) -> None:
+def _add_data(parser: Parser) -> None:
     parser.add_argument("--data", metavar="FILE.csv", help="table with one row per increment")
     parser.add_argument(
         "--csv",
@@ -247,6 +247,11 @@ def _add_table(parser: Parser) -> None:
         default="plain",
         metavar="FORM",
         help="plain (default), or excel: as Excel opens it in the country of --language",
+    )
+    parser.add_argument(
+        "--trajectory",
+        metavar="FILE",
+        help="all grains and contacts: .xyz (OVITO, ASE), .npz (NumPy) or .vtp (ParaView)",
     )
 
 

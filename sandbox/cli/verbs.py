@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 FILM_SUFFIXES = (".mp4", ".gif", ".png")
 PAGE_SUFFIXES = (".html", ".htm")
+TRAJECTORY_SUFFIXES = (".xyz", ".extxyz", ".npz", ".vtp", ".pvd")
 
 
 def list_scenes(options: argparse.Namespace) -> int:
@@ -78,7 +79,13 @@ def record(options: argparse.Namespace) -> int:
     """Make a film, a table or both, of one packing or of several side by side."""
     output = _output(options, options.size, options.fps, options.every)
     if output is None:
-        raise InputError("nothing to write: give --out FILE.mp4, --data FILE.csv or both")
+        raise InputError(
+            "nothing to write: give --out FILE.mp4, --data FILE.csv or --trajectory FILE.xyz"
+        )
+    if output.trajectory and options.compare:
+        raise InputError(
+            "--trajectory takes one packing: leave --compare out, or record each alone"
+        )
     sessions = _sessions(options)
     steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
     from sandbox.interrupts import stop_like_ctrl_c
@@ -169,6 +176,7 @@ def _output(
     film: Path | None = None
     table: Path | None = None
     page: Path | None = None
+    trajectory: Path | None = None
     if options.out and options.out.lower().endswith(PAGE_SUFFIXES):
         page = arguments.output_file("--out", options.out, PAGE_SUFFIXES)
     elif options.out:
@@ -180,13 +188,24 @@ def _output(
         environment.require_pygame_ce()
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])
-    arguments.check_different({"--out": film or page, "--data": table})
-    if not (film or table or page):
+    if options.trajectory:
+        trajectory = _trajectory(options.trajectory)
+    files = {"--out": film or page, "--data": table, "--trajectory": trajectory}
+    arguments.check_different(files)
+    if not any(files.values()):
         return None
     if options.csv != "plain" and table is None:
         raise InputError(f"--csv {options.csv}: there is no table; give --data FILE.csv")
-    spelling = _spelling(options.csv)
-    return Output(film, table, size, fps, options.view, options.theme, every, spelling, page)
+    look = size, fps, options.view, options.theme
+    return Output(film, table, *look, every, _spelling(options.csv), page, trajectory)
+
+
+def _trajectory(text: str) -> Path:
+    path = arguments.output_file("--trajectory", text, TRAJECTORY_SUFFIXES)
+    if path.suffix.lower() != ".vtp":
+        return path
+    # Of those there are three a frame; this names them.
+    return arguments.output_file("--trajectory", str(path.with_suffix(".pvd")), [".pvd"])
 
 
 def _spelling(name: str) -> Spelling:
@@ -298,6 +317,8 @@ def _interrupted(outcome: Outcome, output: Output | None) -> str:
         written.append(f"{outcome.pictures} pictures to {output.page}")
     if outcome.increments and output and output.table:
         written.append(f"{outcome.rows} rows to {output.table}")
+    if outcome.increments and output and output.trajectory:
+        written.append(f"the trajectory to {output.trajectory}")
     what = f"wrote {' and '.join(written)}" if written else "nothing was written"
     return f"stopped after {outcome.increments} increments: {what}"
 

@@ -19,6 +19,7 @@ from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
 
 if TYPE_CHECKING:
+    from sandbox.files.trajectories.trajectory import Trajectory
     from sandbox.player.tape import Tape
     from sandbox.session.frame import Frame
     from sandbox.session.log import Log
@@ -31,7 +32,7 @@ SLICE = 400
 
 @dataclass(frozen=True)
 class Output:
-    """Where a run is written to; at least one of the three."""
+    """Where a run is written to; at least one of them."""
 
     film: Path | None
     table: Path | None
@@ -39,9 +40,12 @@ class Output:
     fps: float = 30.0
     view: str = "kind"
     theme: str = "dark"
-    every: int = 1  # increments to a frame of the film, or to a picture of the page
+    every: int = (
+        1  # increments to a frame of the film or the trajectory, or to a picture of the page
+    )
     spelling: Spelling = PLAIN  # of the table
     page: Path | None = None
+    trajectory: Path | None = None  # .xyz, .npz or .pvd
 
 
 @dataclass(frozen=True)
@@ -137,6 +141,7 @@ def run(
     )
     tape = _begun_tape(sessions, output) if output and output.page else None
     draw = _drawer(output) if output and film else None
+    trajectory = _trajectory(output.trajectory) if output and output.trajectory else None
     writer = VideoWriter(film, output.size, output.fps) if output and film else None
     increments = 0
     interrupted = False
@@ -144,10 +149,13 @@ def run(
     try:
         with (
             writer or nullcontext(),
+            trajectory or nullcontext(),
             tqdm(
                 total=steps, desc=sessions[0].scene.name, unit="increment", **bar_options()
             ) as bar,
         ):
+            if trajectory:
+                trajectory.begin(sessions[0])
             while increments < steps:
                 with deferred():
                     finished = next(work, None)
@@ -159,6 +167,8 @@ def run(
                             writer.write(draw([session.frame() for session in sessions]))
                         if tape:
                             tape.add([session.frame() for session in sessions])
+                        if trajectory and output and increments % output.every == 0:
+                            trajectory.write(sessions[0])
                         bar.update()
                 if table and increments:
                     try:
@@ -194,6 +204,12 @@ def _write_page(tape: Tape, output: Output) -> None:
     assert output.page is not None
     with deferred(), atomic_write(output.page) as file:
         file.write(page(tape, Look(output.theme, output.view)).encode())
+
+
+def _trajectory(path: Path) -> Trajectory:
+    from sandbox.files.trajectories.trajectory import Trajectory
+
+    return Trajectory(path)
 
 
 def _tables(sessions: Sequence[Session]) -> list[tuple[str, RunTable]]:

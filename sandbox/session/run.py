@@ -16,6 +16,7 @@ from sandbox.session.checkpoints import Checkpoint, Checkpoints, bare
 from sandbox.session.commands import Edit
 from sandbox.session.course import Course
 from sandbox.session.editing import edited
+from sandbox.session.forces import without
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
 from scenes.accuracy import UNKNOWN
@@ -125,6 +126,7 @@ class Run:
             body_contacts=bodies,
             reactions=self.engine.reactions,
             unbalanced=np.zeros(len(made.packing)),
+            friction=None,
         )
         self.touched()
         self._before_edit = before
@@ -163,6 +165,9 @@ class Run:
         before = None if self.course.touched else self.last
         unfinished = increment.report.reason is StopReason.ITERATION_LIMIT
         self.course.touched = max(self.course.touched - 1, 0) if unfinished else 0
+        stood = increment.friction is None and increment.report.reason not in FAILED
+        if stood and self.setup.friction is not None:  # nothing has moved, and forces are as before
+            increment = replace(increment, friction=self.last.friction)
         self.last = increment
         earlier = None if before is None else Earlier(before, self.setup.packing.label)
         self.course.tell_what_stopped(self.setup, increment)
@@ -254,7 +259,11 @@ class Run:
             pairs, bodies = self.engine.contacts()
             unbalanced = self.last.unbalanced[~gone]
             self.last = replace(
-                self.last, grain_contacts=pairs, body_contacts=bodies, unbalanced=unbalanced
+                self.last,
+                grain_contacts=pairs,
+                body_contacts=bodies,
+                unbalanced=unbalanced,
+                friction=without(self.last.friction, gone),
             )
         return int(gone.sum())
 

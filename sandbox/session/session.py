@@ -32,6 +32,7 @@ from sandbox.session.commands import (
     Undo,
     check,
 )
+from sandbox.session.forces import ContactForces, contact_forces
 from sandbox.session.frame import Frame
 from sandbox.session.history import History, Row
 from sandbox.session.log import Log
@@ -337,6 +338,10 @@ class Session:
         """A snapshot that shares nothing with the session."""
         now = self.run.kept
         return take(self.run, self._past.can_undo(now), self._past.can_redo, self._refusals)
+
+    def contact_forces(self) -> ContactForces:
+        """Of the contacts of the frame, as the newest row adds them up on bodies."""
+        return contact_forces(self.run.last, self.run.setup.world)
 
     def state_hash(self) -> str:
         """Hash of every bit of the state."""

@@ -227,6 +227,11 @@ MISTAKES = {
         ["record", "hopper", "--out", "a.png", "--csv", "excel"],
         "--data FILE.csv",
     ),
+    "several trajectories": (
+        ["record", "hopper", "--trajectory", "a.xyz", "--compare", "regular,mixed"],
+        "leave --compare out",
+    ),
+    "suffix of the trajectory": (["record", "hopper", "--trajectory", "a.dump"], ".npz"),
     "suffix of the log": (["play", "hopper", "--log", "run.txt"], ".jsonl"),
     "folder": (["record", "hopper", "--out", "nowhere/film.mp4"], "make it first"),
     "size": (["record", "hopper", "--out", "film.mp4", "--size", "641x361"], "even"),

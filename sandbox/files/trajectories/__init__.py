@@ -1,0 +1,1 @@
+"""Trajectories for other people's programs: extended XYZ, NumPy arrays, VTK's PolyData."""
