@@ -36,7 +36,7 @@ class Cardboard:
     def __init__(self) -> None:
         self.scene = SimpleNamespace(name="cardboard")
         self.packing = "cardboard"
-        self.history = self
+        self.history = self.table = self
         self.lines = [Line(0)]
         self.slices_done = 0
         self.asked_for_frames = 0
@@ -70,8 +70,8 @@ class Cardboard:
     def header(self) -> list[str]:
         return ["increment"]
 
-    def rows(self) -> Iterator[tuple[int]]:
-        return ((i,) for i in range(len(self)))
+    def rows(self, begin: int = 0) -> Iterator[tuple[int]]:
+        return ((i,) for i in range(begin, len(self)))
 
     def __getitem__(self, index: int) -> Line:
         self.lines += [Line(i) for i in range(len(self.lines), index + 1)]
