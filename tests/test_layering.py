@@ -95,6 +95,7 @@ ROOMS = {
     "studies.common record player files session words scenes core",
     "window": "window.solvers record player files draw lessons session words scenes core",
     "window.solvers": "files session words scenes core",
+    "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,

@@ -55,7 +55,13 @@ def test_the_keys_are_those_of_the_help_page() -> None:
     assert keys == [key for _, rows in words.help_groups() for key, _ in rows]
 
 
-PAGES = ("README.md", "sandbox/README.md", "scenes/README.md", "assets/studies/README.md")
+PAGES = (
+    "README.md",
+    "sandbox/README.md",
+    "scenes/README.md",
+    "sandbox/notebook/README.md",
+    "assets/studies/README.md",
+)
 
 
 @pytest.mark.parametrize("page", PAGES)
