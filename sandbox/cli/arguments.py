@@ -18,7 +18,7 @@ from core.files import clear, followed, try_writing
 
 SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
-HIGHEST_FPS = {".mp4": 120.0, ".gif": 50.0, ".png": 120.0}
+HIGHEST_FPS = {".mp4": 120.0, ".webm": 120.0, ".gif": 50.0, ".png": 120.0}
 MOST_STEPS = 1_000_000
 LONGEST_LINE = 400  # letters of a message
 

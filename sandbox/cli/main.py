@@ -131,8 +131,9 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "--out",
         metavar="FILE",
-        help="film (.mp4), animation (.gif), last frame (.png), or a page that plays the run (.html)",
+        help="film (.mp4, .webm), animation (.gif), last frame (.png), or a page that plays the run (.html)",
     )
+    _add_gif(record)
     _add_data(record)
     _add_scene_options(record)
     _add_compare(record)
@@ -167,6 +168,7 @@ def _add_replay(command: Command) -> None:
     )
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation, last frame or page")
+    _add_gif(replay)
     _add_data(replay)
     _add_look(replay)
 
@@ -236,6 +238,16 @@ def _add_scene_options(parser: Parser) -> None:
         default=[],
         metavar="NAME=VALUE",
         help="set a parameter of the scene; may be repeated",
+    )
+
+
+def _add_gif(parser: Parser) -> None:
+    parser.add_argument(
+        "--gif",
+        type=argument(arguments.one_of("loop", "once", "hold")),
+        default="loop",
+        metavar="END",
+        help="an animation begins again (loop, the default), stays at its last frame (once), or holds it before (hold)",
     )
 
 

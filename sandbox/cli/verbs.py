@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from sandbox.session.beginning import SceneFile
     from sandbox.session.session import Session
 
-FILM_SUFFIXES = (".mp4", ".gif", ".png")
+FILM_SUFFIXES = (".mp4", ".webm", ".gif", ".png")
 PAGE_SUFFIXES = (".html", ".htm")
 TRAJECTORY_SUFFIXES = (".xyz", ".extxyz", ".npz", ".vtp", ".pvd")
 
@@ -186,6 +186,12 @@ def _output(
         arguments.check_fps(fps, film.suffix.lower())
         arguments.check_size(size, film.suffix.lower())
         environment.require_pygame_ce()
+        if film.suffix.lower() == ".webm":
+            from sandbox.record.video import webm_codec
+
+            webm_codec()  # raises where there is none
+    if options.gif != "loop" and (film is None or film.suffix.lower() != ".gif"):
+        raise InputError(f"--gif {options.gif}: there is no animation; give --out FILE.gif")
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])
     if options.trajectory:
@@ -197,7 +203,7 @@ def _output(
     if options.csv != "plain" and table is None:
         raise InputError(f"--csv {options.csv}: there is no table; give --data FILE.csv")
     look = size, fps, options.view, options.theme
-    return Output(film, table, *look, every, _spelling(options.csv), page, trajectory)
+    return Output(film, table, *look, every, _spelling(options.csv), page, trajectory, options.gif)
 
 
 def _trajectory(text: str) -> Path:

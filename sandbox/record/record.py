@@ -46,6 +46,7 @@ class Output:
     spelling: Spelling = PLAIN  # of the table
     page: Path | None = None
     trajectory: Path | None = None  # .xyz, .npz or .pvd
+    gif: str = "loop"  # how an animation ends: see ``GIF_ENDS``
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,7 @@ def run(
     tape = _begun_tape(sessions, output) if output and output.page else None
     draw = _drawer(output) if output and film else None
     trajectory = _trajectory(output.trajectory) if output and output.trajectory else None
-    writer = VideoWriter(film, output.size, output.fps) if output and film else None
+    writer = VideoWriter(film, output.size, output.fps, output.gif) if output and film else None
     increments = 0
     interrupted = False
     failed: InputError | None = None  # of the table

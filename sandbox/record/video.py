@@ -1,4 +1,4 @@
-"""Frames to a film (.mp4), an animation (.gif) or a picture of the last frame (.png).
+"""Frames to a film (.mp4, .webm), an animation (.gif) or a picture of the last frame (.png).
 
 Whatever happens, the file that stood at the path before stays until the new one is whole: frames
 go to a hidden name in the same folder, which is renamed at the end. Ctrl-C also ends in a whole
@@ -22,7 +22,7 @@ from core.errors import InputError
 from core.files import atomic_write
 from sandbox.interrupts import deferred
 
-SUFFIXES = (".mp4", ".gif", ".png")
+SUFFIXES = (".mp4", ".webm", ".gif", ".png")
 
 Image = NDArray[np.uint8]
 
@@ -36,6 +36,19 @@ _MP4 = {
     "quality": None,
     "ffmpeg_params": ["-preset", "veryfast", "-crf", "20", "-movflags", "+faststart", *_TO_BT709],
 }
+_VP9, _VP8 = "libvpx-vp9", "libvpx"
+_WEBM = {
+    "pixelformat": "yuv420p",
+    "macro_block_size": 1,
+    "quality": None,
+    "ffmpeg_params": [
+        *("-crf", "36", "-b:v", "0", "-deadline", "realtime", "-cpu-used", "5"),
+        *("-auto-alt-ref", "0", "-f", "webm", "-fflags", "+bitexact", *_TO_BT709),
+    ],
+}
+# How an animation ends: it begins again, stays at its last frame, or begins again after that has stood for a while.
+GIF_ENDS = {"loop": ("-loop", "0"), "once": ("-loop", "-1"), "hold": ("-loop", "0")}
+HOLD = 2.0  # [s]
 # A GIF needs the palette of the whole film before its first frame can be written, so frames wait in
 # a lossless file: memory stays flat however long the film is.
 _LOSSLESS = {
@@ -53,10 +66,17 @@ class VideoWriter:
 
     A context manager: leaving it normally, or by Ctrl-C, publishes the file; leaving it by any
     other exception removes what was written so far. With no frame written nothing is published.
-    Raises InputError, in one line, for what a person can mend: the suffix, the size, a full disk.
+    ``gif`` is one of ``GIF_ENDS``. Raises InputError, in one line, for what a person can mend: the
+    suffix, the size, a full disk, an ffmpeg that cannot write such films.
     """
 
-    def __init__(self, path: str | os.PathLike[str], size: tuple[int, int], fps: float) -> None:
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        size: tuple[int, int],
+        fps: float,
+        gif: str = "loop",
+    ) -> None:
         # Absolute, since ffmpeg would take "a:b.mp4" for a protocol and "-a.mp4" for an option.
         self.path = files.followed(path)
         self.suffix = Path(path).suffix.lower()
@@ -66,10 +86,13 @@ class VideoWriter:
             raise InputError(f"a film needs even width and height, not {size[0]}x{size[1]}")
         self.size = size
         self.fps = fps
+        self.gif = gif
         self.frames = 0
         special = files.is_special(self.path)
         near = Path(tempfile.gettempdir(), self.path.name) if special else self.path
-        self._temporary = files.hidden(near, f"part{self.suffix}")
+        # A name that ``core.files`` knows again; WebM is a kind of Matroska.
+        own = ".mkv" if self.suffix == ".webm" else self.suffix
+        self._temporary = files.hidden(near, f"part{own}")
         self._lossless = files.hidden(near, "part.mkv")
         self._palette = files.hidden(near, "part.png")
         self._claimed: list[BinaryIO] = []  # open as long as this is at work: see core.files
@@ -77,6 +100,7 @@ class VideoWriter:
         self._last: Image | None = None
         if self.suffix != ".png":
             _ffmpeg_program()
+        self._webm = {"codec": webm_codec(), **_WEBM} if self.suffix == ".webm" else {}
 
     def write(self, image: Image) -> None:
         """Append one frame, uint8 (h, w, 3)."""
@@ -131,9 +155,8 @@ class VideoWriter:
     def _open_encoder(self) -> Any:
         import imageio.v2
 
-        target, options = (
-            (self._temporary, _MP4) if self.suffix == ".mp4" else (self._lossless, _LOSSLESS)
-        )
+        options = {".mp4": _MP4, ".webm": self._webm, ".gif": _LOSSLESS}[self.suffix]
+        target = self._lossless if self.suffix == ".gif" else self._temporary
         self._claim(target)
         # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead.
         return imageio.v2.get_writer(
@@ -173,11 +196,12 @@ class VideoWriter:
     def _make_gif(self) -> None:
         """One palette made from all frames: no flicker, and small differences between frames."""
         self._claim(self._palette, self._temporary)
+        wait = ("-final_delay", str(round(100 * HOLD))) if self.gif == "hold" else ()
         _ffmpeg("-i", self._lossless, "-vf", "palettegen", "-update", "1", self._palette)
         _ffmpeg(
             *("-i", self._lossless, "-i", self._palette),
             *("-lavfi", "paletteuse=dither=none:diff_mode=rectangle"),
-            *("-loop", "0", self._temporary),
+            *(*GIF_ENDS[self.gif], *wait, self._temporary),
         )
 
     def _failed(self, error: OSError) -> InputError:
@@ -226,6 +250,18 @@ def _ffmpeg_program() -> str:
         raise InputError(
             "no ffmpeg was found: reinstall it with pip install --force-reinstall imageio-ffmpeg"
         ) from error
+
+
+def webm_codec() -> str:
+    """The better one of what this ffmpeg has for WebM. Raises InputError if it has none."""
+    known = {line.split()[1] for line in _ffmpeg("-encoders").splitlines() if len(line.split()) > 1}
+    for codec in (_VP9, _VP8):
+        if codec in known:
+            return codec
+    raise InputError(
+        "this ffmpeg cannot write .webm, as it is built without libvpx: write .mp4, or name another "
+        "ffmpeg in the environment variable IMAGEIO_FFMPEG_EXE"
+    )
 
 
 def _ffmpeg(*arguments: str | Path) -> str:

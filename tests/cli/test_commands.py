@@ -223,6 +223,7 @@ MISTAKES = {
     "no output": (["record", "hopper"], "--out FILE.mp4"),
     "suffix": (["record", "hopper", "--out", "film.avi"], ".mp4"),
     "suffix of the table": (["record", "hopper", "--data", "run.txt"], ".csv"),
+    "end of no animation": (["record", "hopper", "--out", "a.mp4", "--gif", "once"], "FILE.gif"),
     "form of no table": (
         ["record", "hopper", "--out", "a.png", "--csv", "excel"],
         "--data FILE.csv",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -45,7 +46,7 @@ def frames_of(path: Path) -> list[NDArray[np.uint8]]:
     return [np.asarray(frame)[..., :3] for frame in imageio.v2.mimread(path, memtest=False)]
 
 
-@pytest.mark.parametrize(("suffix", "tolerance"), [(".mp4", 12), (".gif", 0)])
+@pytest.mark.parametrize(("suffix", "tolerance"), [(".mp4", 12), (".webm", 12), (".gif", 0)])
 def test_every_frame_arrives_with_its_colours(tmp_path: Path, suffix: str, tolerance: int) -> None:
     path = tmp_path / f"film{suffix}"
     # Frames 20 to 23 are alike: encoders like to merge these.
@@ -176,6 +177,30 @@ def test_animations_and_pictures_have_any_size(tmp_path: Path, suffix: str) -> N
         writer.write(np.ascontiguousarray(picture))
     (frame,) = frames_of(path)
     np.testing.assert_array_equal(frame, picture)
+
+
+@pytest.mark.parametrize(
+    ("end", "loops", "last"), [("loop", 0, 4), ("once", None, 4), ("hold", 0, 200)]
+)
+def test_an_animation_ends_as_it_is_told(
+    tmp_path: Path, end: str, loops: int | None, last: int
+) -> None:
+    path = tmp_path / "film.gif"
+    with VideoWriter(path, (WIDTH, HEIGHT), 25, end) as writer:
+        for column in range(3):
+            writer.write(image(column))
+    content = path.read_bytes()
+    # The block that browsers ask how often, and those before each frame: the time that it is shown, in hundredths of a second.
+    again = re.search(rb"NETSCAPE2\.0\x03\x01(..)\x00", content, re.DOTALL)
+    assert (again and int.from_bytes(again[1], "little")) == loops
+    shown = re.findall(rb"\x21\xf9\x04.(..).\x00", content, re.DOTALL)
+    assert [int.from_bytes(time, "little") for time in shown] == [4, 4, last]
+
+
+def test_an_ffmpeg_without_webm_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(video, "_ffmpeg", lambda *_: " V....D libx264  H.264")
+    with pytest.raises(InputError, match=r"cannot write \.webm.*: write \.mp4"):
+        VideoWriter(tmp_path / "film.webm", (WIDTH, HEIGHT), 30)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices of POSIX")
