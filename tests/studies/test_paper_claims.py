@@ -12,7 +12,7 @@ import pytest
 pytest.importorskip("scipy")
 
 from sandbox.studies.common.statistics import FAILS, HOLDS, OPEN, Demand, Exact, Student
-from sandbox.studies.paper import bulk, cost, grains, hopper, intruder, quakes, report, shear
+from sandbox.studies.paper import bulk, cost, grains, hopper, intruder, quakes, report
 from sandbox.studies.paper import claims as parts_of
 from sandbox.studies.paper.claims import (
     ASPECTS,
@@ -44,6 +44,7 @@ from sandbox.studies.paper.conditions import (
 )
 from sandbox.studies.paper.probes import PROBES
 from sandbox.studies.paper.runs import HAND, Request, Result
+from sandbox.studies.paper.shear import cell, confinement, small_cycles, steady
 from sandbox.studies.paper.study import CLAIMS
 from scenes import registry
 from scenes.grains import material as grains_of
@@ -120,7 +121,7 @@ def test_direction_and_factor_are_judged_apart() -> None:
 
 def test_what_could_hang_on_size_or_step_is_varied() -> None:
     at_high = [
-        p for n, p in all_parts() if n == "modulus_collapse" and f"{shear.HIGH:g} k" in p.says
+        p for n, p in all_parts() if n == "modulus_collapse" and f"{confinement.HIGH:g} k" in p.says
     ]
     (participation,) = [p for n, p in all_parts() if n == "participation"]
     for part in (*at_high, participation):
@@ -414,15 +415,15 @@ def shears(friction: dict[float, float], stiffness: dict[float, float]) -> list[
     """Steady flow at τ = friction × P, with P = stiffness × (φ − 0.84), in waves of a tenth."""
     strain = np.linspace(0.0, 1.0, 101)
     made = []
-    for lam, fractions in shear.FRACTIONS.items():
+    for lam, fractions in cell.FRACTIONS.items():
         for fraction in fractions:
             for seed in SEEDS:
                 pressure = noise(seed) * stiffness[lam] * (fraction - 0.84)
                 settings = (
-                    ("grains", shear.GRAINS),
-                    ("step", shear.STEP),
+                    ("grains", cell.GRAINS),
+                    ("step", steady.STEP),
                     ("packing_fraction", fraction),
-                    ("protocol", shear.STEADY),
+                    ("protocol", cell.STEADY),
                     *material(lam),
                 )
                 wave = 1.0 + 0.1 * noise(seed + 1) * np.sin(40.0 * strain)
@@ -442,7 +443,7 @@ STIFFNESS = dict(zip(LAMBDAS, (0.3, 0.3, 0.7, 2.5, 8.0), strict=True))
 
 def test_yield_stress_collapses_if_friction_is_the_same() -> None:
     same = shears(dict.fromkeys(LAMBDAS, 0.1), STIFFNESS)
-    assert value(shear.at_equal_volume(shear.yielding), same) == pytest.approx(2.5 / 0.3)
+    assert value(confinement.at_equal_volume(steady.yielding), same) == pytest.approx(2.5 / 0.3)
     found = verdicts("yield_stress", same)
     assert found["smaller for auxetic grains"] == HOLDS
     assert found["twice as small"] == FAILS  # it is eight times
@@ -450,7 +451,7 @@ def test_yield_stress_collapses_if_friction_is_the_same() -> None:
     assert set(verdicts("friction", same).values()) == {HOLDS}
     collapse = verdicts("yield_collapse", same)
     assert collapse["one curve for λ from 0.01 to 100"] == HOLDS
-    assert collapse[f"one curve for all at equal pressure, at {shear.HIGH:g} k"] == HOLDS
+    assert collapse[f"one curve for all at equal pressure, at {confinement.HIGH:g} k"] == HOLDS
     assert collapse["grows sublinearly with the pressure, regular"] != HOLDS  # τ ∝ P
     fluctuations = verdicts("pressure_fluctuations", same)
     assert fluctuations["much smaller, at equal volume"] == HOLDS
@@ -461,21 +462,21 @@ def test_yield_stress_collapses_if_friction_is_the_same() -> None:
     assert HOLDS not in [
         v for says, v in verdicts("yield_collapse", different).items() if "equal pressure" in says
     ]
-    assert len(shear.yield_panels(same)) == 4
+    assert len(steady.yield_panels(same)) == 4
 
 
 def test_no_common_pressure_is_no_collapse() -> None:
     apart = shears(dict.fromkeys(LAMBDAS, 0.1), {**STIFFNESS, AUXETIC: 0.01})
     with pytest.raises(Unmeasurable, match="reach"):
-        shear.at_equal_pressure(shear.yielding, shear.HIGH)(apart)
+        confinement.at_equal_pressure(steady.yielding, confinement.HIGH)(apart)
 
 
 def cycles(
     modulus: dict[float, float],
     rise: float = 0.0,
     friction: float = 0.5,
-    grains: int = shear.GRAINS,
-    step: float = shear.CYCLE_STEP,
+    grains: int = cell.GRAINS,
+    step: float = small_cycles.CYCLE_STEP,
 ) -> list[Result]:
     """One cycle of strain. The pressure rises by the share ``rise`` × strain."""
     strain = 0.04 * np.concatenate(
@@ -483,7 +484,7 @@ def cycles(
     )
     made = []
     for lam in modulus:
-        for fraction in shear.FRACTIONS[lam]:
+        for fraction in cell.FRACTIONS[lam]:
             for seed in SEEDS:
                 pressure = STIFFNESS[lam] * (fraction - 0.84)
                 settings = (
@@ -515,13 +516,14 @@ def test_modulus_and_its_variations() -> None:
     assert found["twice as low at large confinement"] == FAILS
     assert found["increases faster with confinement for regular grains"] == HOLDS
     assert set(verdicts("modulus_collapse", runs).values()) == {HOLDS}
-    high = f"one curve for all at equal pressure, at {shear.HIGH:g} k"
-    odd = cycles({REGULAR: 1.0, AUXETIC: 1.7}, grains=shear.GRAINS // 2)
+    high = f"one curve for all at equal pressure, at {confinement.HIGH:g} k"
+    odd = cycles({REGULAR: 1.0, AUXETIC: 1.7}, grains=cell.GRAINS // 2)
     assert verdicts("modulus_collapse", runs + odd)[high] == OPEN
-    fine = cycles({REGULAR: 1.0, AUXETIC: 1.0}, step=shear.PAPER_STEP)
+    fine = cycles({REGULAR: 1.0, AUXETIC: 1.0}, step=small_cycles.PAPER_STEP)
     assert verdicts("modulus_collapse", runs + fine)[high] == HOLDS
     assert value(
-        shear.at_equal_pressure(shear.modulus, shear.HIGH, shear.finer_steps), runs + fine
+        confinement.at_equal_pressure(small_cycles.modulus, confinement.HIGH, cell.finer_steps),
+        runs + fine,
     ) == pytest.approx(1.0, abs=0.02)
 
 
@@ -637,14 +639,14 @@ def test_the_cost_of_the_papers_conditions_is_extrapolated() -> None:
     fine = []
     for run in plain:
         settings = dict(run.request.settings)
-        if settings["packing_fraction"] == shear.COMMON[-1] and settings["grains"] == shear.GRAINS:
+        if settings["packing_fraction"] == cell.COMMON[-1] and settings["grains"] == cell.GRAINS:
             asked = replace(run.request, settings=tuple({**settings, "step": 0.01}.items()))
             fine.append(replace(run, request=asked, seconds=20.0))
     assert cost.growth(plain) == 1.0
     assert cost.growth(plain + fine) == pytest.approx(math.log(2.0) / math.log(5.0))
     (steady,) = cost.estimate(plain + fine)
     assert steady.protocol.startswith("Fig. 4")
-    points = max(len(fractions) for fractions in shear.FRACTIONS.values())
+    points = max(len(fractions) for fractions in cell.FRACTIONS.values())
     assert steady.runs == SYSTEMS * points * len(LAMBDAS)
     assert steady.hours == pytest.approx(steady.runs * 10.0 * 4.0 / 3600.0)
     assert cost.estimate([run for run in plain if lam_of(run.request) != AUXETIC]) == []

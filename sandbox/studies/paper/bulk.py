@@ -84,8 +84,8 @@ def squeezes(quick: bool) -> list[Request]:
 
 
 def strain(result: Result) -> Floats:
-    """Strain of a run (M,) from where the pressure would be 0: the scene counts from a small one that grows with the contacts'
-    stiffness. For the press its loss of area as it is.
+    """Strain of a run (M,) from where the pressure would be 0: the scene counts from 5e-4 k, whatever the contacts' stiffness.
+    For the press its loss of area as it is.
     """
     stroke: Floats = result.column("stroke")
     if result.request.scene != "biaxial_periodic":

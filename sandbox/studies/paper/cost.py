@@ -14,7 +14,9 @@ from sandbox.studies.paper.conditions import (
     lam_of,
 )
 from sandbox.studies.paper.runs import Result
-from sandbox.studies.paper.shear import FINE_STEP, GRAINS, PAPER_STEP, SMALL, STEADY, STEP
+from sandbox.studies.paper.shear.cell import GRAINS, SMALL, STEADY
+from sandbox.studies.paper.shear.small_cycles import PAPER_STEP
+from sandbox.studies.paper.shear.steady import FINE_STEP, STEP
 
 SPEED = 3600.0  # seconds in an hour
 

@@ -20,16 +20,18 @@ from sandbox.studies.paper import grains as paper_grains
 from sandbox.studies.paper import hopper as paper_hopper
 from sandbox.studies.paper import intruder as paper_intruder
 from sandbox.studies.paper import quakes as paper_quakes
-from sandbox.studies.paper import shear as paper_shear
 from sandbox.studies.paper.claims import Claim, settle
 from sandbox.studies.paper.cost import estimate
 from sandbox.studies.paper.report import Judged, as_json, as_markdown, as_table
 from sandbox.studies.paper.runs import Request, Result, Store, run_all
+from sandbox.studies.paper.shear import dilatancy, small_cycles, steady
 
 CLAIMS: tuple[Claim, ...] = (
     *paper_grains.CLAIMS,
     *paper_bulk.CLAIMS,
-    *paper_shear.CLAIMS,
+    *small_cycles.CLAIMS,
+    *steady.CLAIMS,
+    *dilatancy.CLAIMS,
     *paper_quakes.CLAIMS,
     *paper_intruder.CLAIMS,
     *paper_hopper.CLAIMS,
