@@ -185,6 +185,7 @@ def test_a_hand_is_that_of_the_study_of_the_hand() -> None:
 def test_a_process_that_dies_fails_its_run_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    from sandbox.studies.common.batch import LOST
     from sandbox.studies.common.pool import Pool
     from sandbox.studies.paper import runs
 
@@ -193,16 +194,16 @@ def test_a_process_that_dies_fails_its_run_alone(
     first = [True]
     true = runs._execute
 
-    def call(pool: Pool, function: object, *arguments: object) -> object:
+    def submit(pool: Pool, function: object, *arguments: object) -> object:
         if function is true and first.pop():
             first.append(False)
             return real(pool, os._exit, 3)
         return real(pool, function, *arguments)  # type: ignore[arg-type]
 
-    real = Pool.call
-    monkeypatch.setattr(Pool, "call", call)
+    real = Pool.submit
+    monkeypatch.setattr(Pool, "submit", submit)
     run_all([tiny("regular"), tiny("auxetic")], store, 1, told.append)
-    assert [result.failure for result in told] == [runs.LOST, None]
+    assert [result.failure for result in told] == [LOST, None]
 
 
 # Figures.

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -26,6 +25,7 @@ from sandbox.studies.accuracy.live import Drive, drives
 from sandbox.studies.accuracy.protocols import APART, PROTOCOLS, protocol
 from sandbox.studies.accuracy.report import as_markdown, as_table, statement
 from sandbox.studies.accuracy.summary import summarise
+from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.folder import finite, machine, write_text
 from sandbox.studies.common.pool import Pool, stopping
 from scenes import registry
@@ -83,8 +83,26 @@ def study(
         if kept is not None:
             found[job] = kept
     before = len(found)
+
+    def done(job: Task, data: dict[str, Any]) -> None:
+        found[job] = json.loads(json.dumps(data))
+        _keep(folder, job, found[job])
+
+    def failed(job: Task, reason: str) -> str:
+        failures[job.scene] = reason
+        return f"failed: {job.scene}, seed {job.seed}: {reason}"
+
+    batch = Batch(
+        measure or execute,
+        [job for job in plan if job not in found],
+        done,
+        failed,
+        label=lambda _: "accuracy",
+        unit="job",
+    )
     try:
-        _run([job for job in plan if job not in found], folder, jobs, found, failures, measure)
+        with _one_thread(), Pool(jobs) as pool:
+            carry_out_all(batch, pool, jobs)
     except KeyboardInterrupt:
         return Outcome({}, failures, len(found), interrupted=True)
     whole = [name for name in chosen if name not in failures]
@@ -128,31 +146,6 @@ def _calibrated(
         for kind in kinds
     }
     return {kind: estimate for kind, estimate in one.items() if estimate is not None}
-
-
-def _run(
-    missing: Sequence[Task],
-    folder: Path,
-    jobs: int,
-    found: dict[Task, dict[str, Any]],
-    failures: dict[str, str],
-    measure: Measure | None,
-) -> None:
-    from tqdm import tqdm
-
-    if not missing:
-        return
-    bar = tqdm(total=len(missing), unit="job", desc="accuracy", file=sys.stderr, mininterval=1.0)
-    with bar, _one_thread(), Pool(jobs) as pool:
-        for job, future in pool.each(measure or execute, missing):
-            error = future.exception()
-            if error is None:
-                found[job] = json.loads(json.dumps(future.result()))
-                _keep(folder, job, found[job])
-            else:
-                failures[job.scene] = f"{type(error).__name__}: {error}"
-                bar.write(f"failed: {job.scene}, seed {job.seed}: {error}", file=sys.stderr)
-            bar.update()
 
 
 @contextmanager

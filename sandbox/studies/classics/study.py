@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,10 +9,10 @@ from pathlib import Path
 
 from core.errors import InputError, did_you_mean
 from core.warmup import compile_kernels
-from sandbox.bars import bar_options
 from sandbox.studies.classics import clogging, discs, grains, heaps, packings
 from sandbox.studies.classics.case import Case, Job, Row, judged
 from sandbox.studies.classics.report import Verdict, as_json, as_markdown, as_table
+from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.kept import keep, read
 from sandbox.studies.common.pool import Pool, Stopped, stopping
@@ -61,9 +60,26 @@ def study(
         if key in wanted
     }
     found, failures = len(rows), list[str]()
-    missing = [job for key, job in wanted.items() if key not in rows]
+
+    def done(job: Job, row: Row) -> None:
+        rows[job.key()] = row
+        keep(kept, job.key(), {"numbers": row.numbers, "seconds": row.seconds})
+
+    def failed(job: Job, reason: str) -> str:
+        failures.append(f"{job}: {reason}")
+        return f"failed: {failures[-1]}"
+
+    batch = Batch(
+        carry_out,
+        [job for key, job in wanted.items() if key not in rows],
+        done,
+        failed,
+        prepare=_compile,
+        label=lambda _: "classics",
+    )
     try:
-        _run(missing, found, kept, jobs, rows, failures)
+        with Pool(jobs) as pool:
+            carry_out_all(batch, pool, jobs, found)
     except KeyboardInterrupt:
         return Study(tuple(rows.values()), (), tuple(failures), interrupted=True)
     ordered = [rows[key] for key in wanted if key in rows]
@@ -111,37 +127,6 @@ def carry_out(job: Job) -> Row:
     began = time.process_time()
     numbers = case.run(job, check)
     return Row(job, numbers, round(time.process_time() - began, 3))
-
-
-def _run(
-    missing: Sequence[Job],
-    found: int,
-    kept: Path,
-    jobs: int,
-    rows: dict[str, Row],
-    failures: list[str],
-) -> None:
-    from tqdm import tqdm
-
-    if not missing:
-        return
-    with (
-        tqdm(total=found + len(missing), initial=found, unit="run", **bar_options()) as bar,
-        Pool(jobs) as pool,
-    ):
-        bar.set_description_str("compiling")
-        pool.call(_compile).exception()  # what fails here fails again, and is told then
-        bar.set_description_str("classics")
-        for job, future in pool.each(carry_out, missing):
-            error = future.exception()
-            if error is None:
-                row = future.result()
-                rows[job.key()] = row
-                keep(kept, job.key(), {"numbers": row.numbers, "seconds": row.seconds})
-            else:
-                failures.append(f"{job}: {type(error).__name__}: {error}")
-                bar.write(f"failed: {failures[-1]}", file=sys.stderr)
-            bar.update()
 
 
 def _compile() -> None:

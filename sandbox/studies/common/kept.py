@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,21 +12,30 @@ from sandbox.interrupts import deferred
 
 def keep(path: Path, key: str, row: Mapping[str, Any]) -> None:
     """Add a finished run, whole or not at all."""
-    with deferred(), path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps({"key": key, **row}, ensure_ascii=False) + "\n")
+    add(path, {"key": key, **row})
 
 
 def read(path: Path) -> dict[str, dict[str, Any]]:
     """Runs that an interrupted study has left, by key; a damaged line is done again."""
+    return {str(row.pop("key")): row for row in lines(path) if "key" in row}
+
+
+def add(path: Path, line: Mapping[str, Any]) -> None:
+    """Add a line, whole or not at all."""
+    with deferred(), path.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+
+def lines(path: Path) -> Iterator[dict[str, Any]]:
+    """What the lines hold, without the damaged ones."""
     try:
-        lines = path.read_text(encoding="utf-8").splitlines()
+        text = path.read_text(encoding="utf-8")
     except (OSError, ValueError):
-        return {}
-    found = {}
-    for line in lines:
+        return
+    for line in text.splitlines():
         try:
-            row = json.loads(line)
-            found[str(row.pop("key"))] = row
-        except (ValueError, KeyError, TypeError, AttributeError):
+            data = json.loads(line)
+        except ValueError:
             continue
-    return found
+        if isinstance(data, dict):
+            yield data

@@ -6,18 +6,15 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from itertools import islice
 from multiprocessing import connection
 from multiprocessing.synchronize import Event
-from typing import Any, TypeVar
+from typing import Any
 
 from sandbox.interrupts import deferred
-
-T = TypeVar("T")
 
 
 class Pool:
@@ -38,31 +35,14 @@ class Pool:
             with deferred():
                 self._executor.shutdown(wait=True, cancel_futures=True)
 
-    def call(self, function: Callable[..., Any], *arguments: object) -> Future[Any]:
-        """Have ``function`` called in some process."""
+    def submit(self, function: Callable[..., Any], /, *arguments: Any) -> Future[Any]:
+        """Have ``function`` called in some process, as ``concurrent.futures.Executor`` does."""
         with _signals_blocked():  # a new process inherits that, and leaves Ctrl-C to this one
             try:
                 return self._running().submit(function, *arguments)
             except BrokenProcessPool:
                 self._executor = None
                 return self._running().submit(function, *arguments)
-
-    def each(
-        self,
-        function: Callable[..., Any],
-        items: Iterable[T],
-        given: Callable[[T], tuple[object, ...]] = lambda item: (item,),
-    ) -> Iterator[tuple[T, Future[Any]]]:
-        """``function`` is called with what is ``given`` of each item, one a process; items and what came of them, when done."""
-        waiting = iter(items)
-        under_way: dict[Future[Any], T] = {}
-        while True:
-            for item in islice(waiting, self._jobs - len(under_way)):
-                under_way[self.call(function, *given(item))] = item
-            if not under_way:
-                return
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                yield under_way.pop(future), future
 
     def _running(self) -> ProcessPoolExecutor:
         if self._executor is None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from core.warmup import compile_kernels
-from sandbox.bars import bar_options
 from sandbox.lessons import tours
+from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.kept import keep, read
 from sandbox.studies.common.pool import Pool, stopping
@@ -104,9 +103,27 @@ def study(
     kept = folder / KEPT
     rows = {key: row for key, row in read(kept).items() if key in wanted}
     found, failures = len(rows), list[str]()
-    missing = [job for key, job in wanted.items() if key not in rows]
+
+    def done(job: Job, row: Row) -> None:
+        rows[job.key()] = row
+        keep(kept, job.key(), row)
+
+    def failed(job: Job, reason: str) -> str:
+        failures.append(f"{job}: {reason}")
+        return f"failed: {failures[-1]}"
+
+    batch = Batch(
+        _carry_out,
+        [job for key, job in wanted.items() if key not in rows],
+        done,
+        failed,
+        known=lambda job: implied(job, rows.values()),
+        prepare=_compile,
+        label=lambda _: "hands",
+    )
     try:
-        _run(missing, found, kept, jobs, rows, failures)
+        with Pool(jobs) as pool:
+            carry_out_all(batch, pool, jobs, found)
     except KeyboardInterrupt:
         return Study(tuple(rows.values()), tuple(failures), interrupted=True)
     ordered = [rows[key] for key in wanted if key in rows]
@@ -123,48 +140,6 @@ def study(
     return Study(tuple(ordered), tuple(failures), interrupted=False)
 
 
-def _run(
-    missing: Sequence[Job],
-    found: int,
-    kept: Path,
-    jobs: int,
-    rows: dict[str, Row],
-    failures: list[str],
-) -> None:
-    from tqdm import tqdm
-
-    if not missing:
-        return
-    with (
-        tqdm(total=found + len(missing), initial=found, unit="run", **bar_options()) as bar,
-        Pool(jobs) as pool,
-    ):
-        bar.set_description_str("compiling")
-        pool.call(_compile).exception()  # what fails here fails again, and is told then
-        bar.set_description_str("hands")
-        for job, future in pool.each(_carry_out, _open(missing, rows, kept, bar.update)):
-            error = future.exception()
-            if error is None:
-                _keep(future.result(), job, rows, kept)
-            else:
-                failures.append(f"{job}: {type(error).__name__}: {error}")
-                bar.write(f"failed: {failures[-1]}", file=sys.stderr)
-            bar.update()
-
-
-def _open(
-    missing: Sequence[Job], rows: dict[str, Row], kept: Path, done: Callable[[], object]
-) -> Iterator[Job]:
-    """Jobs whose outcome is not known when their turn comes; what is known then is kept."""
-    for job in missing:
-        known = implied(job, rows.values())
-        if known is None:
-            yield job
-        else:
-            _keep(known, job, rows, kept)
-            done()
-
-
 def implied(job: Job, rows: Iterable[Row]) -> Row | None:
     """What a push comes to if a stronger hand's run never asked for more than this one has: the same, to the last bit."""
     if job.part != "push" or job.strength is None:
@@ -174,11 +149,6 @@ def implied(job: Job, rows: Iterable[Row]) -> Row | None:
         if same and row["strength"] > job.strength and row["peak_force"] <= job.strength:
             return {**row, "strength": job.strength}
     return None
-
-
-def _keep(row: Row, job: Job, rows: dict[str, Row], kept: Path) -> None:
-    rows[job.key()] = row
-    keep(kept, job.key(), row)
 
 
 def _carry_out(job: Job) -> Row:

@@ -6,9 +6,9 @@ import hashlib
 import json
 import math
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from itertools import islice
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from sandbox import __version__
 from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
+from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.pool import Pool, Stopped, stopping
 from sandbox.studies.hand import jobs as hand_jobs
 from sandbox.studies.paper.probes import PROBES
@@ -36,7 +37,6 @@ BROKEN = {
     "sunk": "a grain was pressed into a wall",
 }
 HAND = "hand"  # instead of a probe: a scripted hand of ``study hand``, until it locks
-LOST = "the process that ran it ended without a word"
 
 
 @dataclass(frozen=True)
@@ -187,43 +187,34 @@ def run_all(
     store: Store,
     jobs: int,
     done: Callable[[Result], None],
-    compiling: Callable[[], None] = lambda: None,
     known: Collection[Result] = (),
+    found_before: int = 0,
 ) -> None:
     """Carry out what ``store`` does not hold yet, ``jobs`` at a time; ``done`` is told each, failed ones too.
 
-    What follows from ``known`` results, which may grow meanwhile, is not carried out again. Kernels are compiled once before the
-    rest begins; ``compiling`` is told. Raises KeyboardInterrupt after all processes have ended.
+    What follows from ``known`` results, which may grow meanwhile, is not carried out again. Raises KeyboardInterrupt after all
+    processes have ended.
     """
-    if not requests:
-        return
 
-    def not_known() -> Iterator[Request]:
-        for request in requests:
-            found = implied(request, known)
-            if found is None:
-                yield request
-            else:
-                store.write(found)
-                done(found)
+    def settled(request: Request, result: Result) -> str | None:
+        store.write(result)
+        done(result)
+        if result.trouble is None:
+            return None
+        what = "failed" if result.failure else "ended early"
+        return f"{what}: {request.scene}, {request.packing}, seed {request.seed}: {result.trouble}"
 
+    batch = Batch(
+        _execute,
+        requests,
+        settled,
+        lambda request, reason: settled(request, Result(request, failure=reason)),
+        known=lambda request: implied(request, known),
+        prepare=partial(_warm, _terms(requests)),
+        label=lambda request: f"{request.scene}, {request.packing}"[:32].ljust(32),
+    )
     with Pool(jobs) as pool:
-        compiling()
-        pool.call(
-            _warm, _terms(requests)
-        ).exception()  # what fails here fails again, and is told then
-        for request, future in pool.each(_execute, not_known()):
-            error = future.exception()
-            if error is None:
-                result = future.result()
-            elif isinstance(error, BrokenProcessPool):
-                result = Result(request, failure=LOST)
-            elif isinstance(error, InputError):
-                result = Result(request, failure=str(error))
-            else:
-                result = Result(request, failure=f"{type(error).__name__}: {error}")
-            store.write(result)
-            done(result)
+        carry_out_all(batch, pool, jobs, found_before)
 
 
 def implied(request: Request, known: Iterable[Result]) -> Result | None:

@@ -5,7 +5,6 @@ Haver, Acuña et al., "Elasticity and rheology of auxetic granular metamaterials
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +12,6 @@ from itertools import islice
 from pathlib import Path
 
 from core.errors import InputError, did_you_mean
-from sandbox.bars import bar_options
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.paper import bulk as paper_bulk
 from sandbox.studies.paper import grains as paper_grains
@@ -83,8 +81,12 @@ def study(
         else:
             results[request] = kept
     found = len(results)
+
+    def done(result: Result) -> None:
+        results[result.request] = result
+
     try:
-        _run(missing, found, store, jobs, results)
+        run_all(missing, store, jobs, done, results.values(), found)
     except KeyboardInterrupt:
         return Outcome((), len(results), _failures(results), interrupted=True)
     judged = judge(chosen, plans, results)
@@ -114,36 +116,6 @@ def judge(
         Judged(claim, tuple(islice(settled, len(findings))))
         for claim, findings in zip(claims, found, strict=True)
     )
-
-
-def _run(
-    missing: Sequence[Request],
-    found: int,
-    store: Store,
-    jobs: int,
-    results: dict[Request, Result],
-) -> None:
-    from tqdm import tqdm
-
-    count = found + len(missing)
-    with tqdm(total=count, initial=found, unit="run", desc="runs", **bar_options()) as bar:
-
-        def done(result: Result) -> None:
-            results[result.request] = result
-            request = result.request
-            bar.set_description_str(f"{request.scene}, {request.packing}"[:32].ljust(32), False)
-            bar.update()
-            if result.trouble is not None:
-                what = "failed" if result.failure else "ended early"
-                bar.write(
-                    f"{what}: {request.scene}, {request.packing}, seed {request.seed}: {result.trouble}",
-                    file=sys.stderr,
-                )
-
-        def compiling() -> None:
-            bar.set_description_str("compiling".ljust(32))
-
-        run_all(missing, store, jobs, done, compiling, results.values())
 
 
 def _draw(

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import itertools
-import json
-import sys
 import time
-from collections.abc import Sequence
-from concurrent.futures import Future
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from core.warmup import compile_kernels
 from sandbox import __version__
-from sandbox.bars import bar_options
-from sandbox.interrupts import deferred
+from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.folder import machine, write_text
+from sandbox.studies.common.kept import add, lines
 from sandbox.studies.common.pool import Pool, stopping
 from sandbox.studies.stability import material as stability_material
 from sandbox.studies.stability import numbers as stability_numbers
@@ -34,7 +32,7 @@ PARTS = (
     stability_material,
     stability_numbers,
 )
-LOST = "the process that ran it ended without a word"
+Key = tuple[str, str]  # group and name of a case
 
 
 @dataclass(frozen=True)
@@ -45,10 +43,14 @@ class Study:
     interrupted: bool
 
 
-def all_cases(quick: bool = False) -> dict[tuple[str, str], Case]:
+def all_cases(quick: bool = False) -> dict[Key, Case]:
     """All cases by group and name; ``quick`` leaves out the longest."""
     cases = itertools.chain.from_iterable(part.cases() for part in PARTS)
-    return {(case.group, case.name): case for case in cases if case.quick or not quick}
+    return _by_name(case for case in cases if case.quick or not quick)
+
+
+def _by_name(cases: Iterable[Case]) -> dict[Key, Case]:
+    return {(case.group, case.name): case for case in cases}
 
 
 def study(
@@ -64,69 +66,50 @@ def study(
     Without ``warm`` kernels are compiled as cases need them, in their time.
     """
     began = time.perf_counter()
-    chosen = list(all_cases(quick).values() if cases is None else cases)
+    chosen = all_cases(quick) if cases is None else _by_name(cases)
     kept = folder / UNFINISHED
     known = {(o.group, o.name): o for o in _read(kept, quick)}
-    outcomes = [known[key] for case in chosen if (key := (case.group, case.name)) in known]
-    waiting = [case for case in chosen if (case.group, case.name) not in known]
+    outcomes = {key: known[key] for key in chosen if key in known}
+
+    def done(key: Key, outcome: Outcome) -> str | None:
+        outcomes[key] = outcome
+        _keep(kept, outcome, quick)
+        return f"FAILS: {outcome.group}: {outcome.name}" if outcome.verdict == FAILS else None
+
+    def failed(key: Key, reason: str) -> str | None:
+        return done(key, Outcome(*key, chosen[key].expectation, CRASHED, reason, FAILS))
+
+    batch = Batch(
+        partial(_carry_out, quick=quick),
+        [key for key in chosen if key not in known],
+        done,
+        failed,
+        prepare=_compile if warm else None,
+        label=lambda _: "cases",
+        unit="case",
+    )
     try:
-        _run(waiting, kept, quick, jobs, outcomes, warm)
+        with Pool(jobs) as pool:
+            carry_out_all(batch, pool, jobs, len(outcomes))
     except KeyboardInterrupt:
-        return Study(tuple(outcomes), interrupted=True)
-    order = {(case.group, case.name): k for k, case in enumerate(chosen)}
-    outcomes.sort(key=lambda outcome: order[outcome.group, outcome.name])
+        return Study(tuple(outcomes.values()), interrupted=True)
+    ordered = [outcomes[key] for key in chosen]
     about = {
         "quick": quick,
         "seconds": round(time.perf_counter() - began, 1),
         "jobs": jobs,
         **machine(),
     }
-    write_text(folder / "results.json", stability_report.as_json(outcomes, about))
-    write_text(folder / "stability.md", stability_report.as_markdown(outcomes, about))
-    stability_report.draw(outcomes, folder)
+    write_text(folder / "results.json", stability_report.as_json(ordered, about))
+    write_text(folder / "stability.md", stability_report.as_markdown(ordered, about))
+    stability_report.draw(ordered, folder)
     kept.unlink(missing_ok=True)
-    return Study(tuple(outcomes), interrupted=False)
+    return Study(tuple(ordered), interrupted=False)
 
 
-def _run(
-    waiting: list[Case],
-    kept: Path,
-    quick: bool,
-    jobs: int,
-    outcomes: list[Outcome],
-    warm: bool,
-) -> None:
-    from tqdm import tqdm
-
-    known = len(outcomes)
-    with (
-        Pool(jobs) as pool,
-        tqdm(total=len(waiting) + known, initial=known, unit="case", **bar_options()) as bar,
-    ):
-        if warm:
-            bar.set_description_str("compiling")
-            pool.call(_compile).exception()  # what fails here fails again, and is told then
-        bar.set_description_str("cases")
-        for case, future in pool.each(_carry_out, waiting, lambda c: (c.group, c.name, quick)):
-            outcome = _outcome(future, case)
-            outcomes.append(outcome)
-            _keep(kept, outcome, quick)
-            bar.update()
-            if outcome.verdict == FAILS:
-                bar.write(f"FAILS: {outcome.group}: {outcome.name}", file=sys.stderr)
-
-
-def _outcome(future: Future[Outcome], case: Case) -> Outcome:
-    error = future.exception()
-    if error is None:
-        return future.result()
-    why = LOST if isinstance(error, BrokenProcessPool) else f"{type(error).__name__}: {error}"
-    return Outcome(case.group, case.name, case.expectation, CRASHED, why, FAILS)
-
-
-def _carry_out(group: str, name: str, quick: bool) -> Outcome:
-    """In a process of the pool."""
-    return carry_out(all_cases()[group, name], quick, stopping)
+def _carry_out(key: Key, quick: bool) -> Outcome:
+    """In a process of the pool: a case cannot be sent there, its name can."""
+    return carry_out(all_cases()[key], quick, stopping)
 
 
 def _compile() -> None:
@@ -138,23 +121,14 @@ def _compile() -> None:
 
 
 def _keep(path: Path, outcome: Outcome, quick: bool) -> None:
-    line = json.dumps({"version": __version__, "quick": quick, **outcome.as_data()})
-    with deferred(), path.open("a", encoding="utf-8") as file:
-        file.write(line + "\n")
+    add(path, {"version": __version__, "quick": quick, **outcome.as_data()})
 
 
 def _read(path: Path, quick: bool) -> list[Outcome]:
     """Outcomes that an interrupted study has left; damaged lines and those of other versions are done again."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, ValueError):
-        return []
     found = []
-    for line in lines:
-        try:
-            data = json.loads(line)
-            if data.pop("version") == __version__ and data.pop("quick") == quick:
+    for data in lines(path):
+        if data.pop("version", None) == __version__ and data.pop("quick", None) == quick:
+            with suppress(ValueError, KeyError, TypeError, AttributeError):
                 found.append(Outcome.from_data(data))
-        except (ValueError, KeyError, TypeError, AttributeError):
-            continue
     return found
