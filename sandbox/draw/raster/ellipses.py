@@ -16,6 +16,7 @@ from sandbox.draw.raster.pixels import (
     first_pixel,
     mix,
     put,
+    ring_in_row,
     sane,
     span,
 )
@@ -96,17 +97,9 @@ def draw_ellipses(
         rim = np.int64(edge[i])
         for row in range(row0, row1):
             dy = row + 0.5 - cy
-            ratio = (dy / half_height) ** 2
-            middle = cx - a12 / a11 * dy
-            half = math.sqrt(max(outer * outer - ratio, 0.0) / a11)
-            first = first_pixel(middle - half, left, right)
-            last = first_pixel(middle + half, left, right)
-            solid0 = last
-            solid1 = last
-            if inner * inner > ratio:
-                half = math.sqrt((inner * inner - ratio) / a11)
-                solid0 = first_pixel(middle - half, first, last)
-                solid1 = first_pixel(middle + half, solid0, last)
+            first, last, solid0, solid1 = ring_in_row(
+                dy, cx, (a11, a12, half_height), outer, inner, (left, right)
+            )
             for column in range(first, solid0):
                 _ellipse_pixel(
                     pixels, row, column, cx, cy, inverse, smallest, colour, rim, edge_width, alpha

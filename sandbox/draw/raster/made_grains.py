@@ -17,6 +17,7 @@ from sandbox.draw.raster.pixels import (
     first_pixel,
     mix,
     put,
+    ring_in_row,
     sane,
 )
 from sandbox.draw.raster.unit_disc import to_unit_disc
@@ -120,17 +121,9 @@ def draw_made_grains(
         row1 = first_pixel(cy + outer * half_height, top, bottom)
         for row in range(row0, row1):
             dy = row + 0.5 - cy
-            ratio = (dy / half_height) ** 2
-            middle = cx - a12 / a11 * dy
-            half = math.sqrt(max(outer * outer - ratio, 0.0) / a11)
-            first = first_pixel(middle - half, left, right)
-            last = first_pixel(middle + half, left, right)
-            empty0 = last
-            empty1 = last
-            if empty * empty > ratio:
-                half = math.sqrt((empty * empty - ratio) / a11)
-                empty0 = first_pixel(middle - half, first, last)
-                empty1 = first_pixel(middle + half, empty0, last)
+            first, last, empty0, empty1 = ring_in_row(
+                dy, cx, (a11, a12, half_height), outer, empty, (left, right)
+            )
             for step in range(first, last - (empty1 - empty0)):
                 column = step if step < empty0 else step + empty1 - empty0
                 dx = column + 0.5 - cx

@@ -26,6 +26,36 @@ def first_pixel(place: float, low: int, high: int) -> int:
 
 
 @kernel
+def ring_in_row(
+    dy: float,
+    cx: float,
+    metric: tuple[float, float, float],
+    outer: float,
+    inner: float,
+    edges: tuple[int, int],
+) -> tuple[int, int, int, int]:
+    """Pixels of a row between two concentric ellipses: from the first to the third, and from the fourth to the second.
+
+    dy: of the row from the centre [px]; cx: the centre's column; metric: a11, a12 of the ellipse a11 x² + 2 a12 x y + a22 y² = 1,
+    and half its height; outer, inner: in its radii; edges: of the clip.
+    """
+    a11, a12, half_height = metric
+    left, right = edges
+    ratio = (dy / half_height) ** 2
+    middle = cx - a12 / a11 * dy
+    half = math.sqrt(max(outer * outer - ratio, 0.0) / a11)
+    first = first_pixel(middle - half, left, right)
+    last = first_pixel(middle + half, left, right)
+    inner0 = last
+    inner1 = last
+    if inner * inner > ratio:
+        half = math.sqrt((inner * inner - ratio) / a11)
+        inner0 = first_pixel(middle - half, first, last)
+        inner1 = first_pixel(middle + half, inner0, last)
+    return first, last, inner0, inner1
+
+
+@kernel
 def sane(size: float) -> bool:
     """Is a sum of magnitudes a number that can be drawn with?
 
