@@ -40,7 +40,6 @@ from sandbox.window.timeline import Timeline
 from sandbox.words import words
 
 REST = 0.25  # with nothing new the picture is drawn this seldom [s]
-PATIENCE = 2.0  # with a thread that is to end [s]
 SWITCH = 0.001  # the solver's thread hands over this soon when a picture is due [s]
 
 
@@ -87,7 +86,7 @@ def run(
     code = 128 + requests[0] if requests else 0  # as shells count
     if not ended:
         # A thread is still compiling. That cannot be broken off, and when the interpreter ends
-        # under it, LLVM aborts: leave at once. Nothing was built, so there is nothing to save.
+        # under it, LLVM aborts: leave at once. All that is finished is saved.
         os._exit(code)
     return code
 
@@ -155,7 +154,7 @@ class App:
         try:
             ended = stage.panes.close(clean)
         finally:
-            warm = self._warmup.join(PATIENCE)
+            warm = self._warmup.join(0.0)
         return warm and ended
 
     # -- one picture --

@@ -52,6 +52,10 @@ class FakeSession:
         self.fail: Exception | None = None
         self.fail_build: Exception | None = None
         self.block_build: threading.Event | None = None
+        self.block_change: threading.Event | None = (
+            None  # as a change does for which kernels are compiled
+        )
+        self.waits = False  # does it, for that?
         self.slice_time = 0.0005
         self._waiting: list[Command] = []
         self._slice = 0
@@ -98,6 +102,9 @@ class FakeSession:
         return True
 
     def _apply(self, command: Command) -> None:
+        if self.block_change is not None and isinstance(command, Change):
+            self.waits = True
+            self.block_change.wait()
         self.commands.append(command)
         match command:
             case Move(_, x, y):

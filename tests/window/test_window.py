@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -337,6 +338,23 @@ def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
     desk.app.close()
     assert read_log(tmp_path / "run.jsonl").end == desk.session.increments
     assert not desk.session.busy
+
+
+def test_closing_does_not_wait_for_a_change_that_compiles(tmp_path: Path) -> None:
+    desk = Desk(log=tmp_path / "run.jsonl")
+    desk.start()
+    desk.key(pygame.K_a)
+    desk.until(lambda: desk.session.increments > 1)
+    compiled = desk.session.block_change = threading.Event()
+    desk.app.stage.send(Change("packing", "auxetic"))
+    desk.until(lambda: desk.session.waits)
+    ended = desk.app.close()
+    assert not compiled.is_set()
+    compiled.set()
+    assert not ended  # the process leaves without that thread
+    log = read_log(tmp_path / "run.jsonl")
+    assert log.end == desk.session.increments
+    assert not any(isinstance(command, Change) for _, command in log.commands)
 
 
 def test_quit_ends_the_loop(running: Desk) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import os
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -25,8 +26,7 @@ from scenes import registry
 from scenes.text import message
 
 NOTHING_TO_SAVE = "there is nothing to save yet"
-PATIENCE = 2.0  # with a thread that is to end [s]
-LONG = 20.0  # the same, when a log is to be written: it ends with a finished increment
+PATIENCE = 1.5  # with all threads that are to end [s]
 MOST_MISSED = 1500  # increments that a packing that joins repeats; after more all begin anew
 
 
@@ -361,22 +361,20 @@ class Panes:
         return ended
 
     def _end(self) -> bool:
-        """End the threads and the log."""
+        """End the threads, all at the same time, and the log: what is not finished by then is not in it."""
         main, log = self._main, self._log
-        wanted = log is not None and self.snapshot.frame is not None
-        others = [pane.solver for pane in self._panes if pane is not main]
-        ended = main is None or main.solver.stop(LONG if wanted else PATIENCE)
-        stopped = [solver.stop(PATIENCE) for solver in (*others, *self._leaving)]
+        solvers = [pane.solver for pane in self._panes if pane is not main] + self._leaving
+        for solver in solvers:
+            solver.stop(0.0)
+        end = time.monotonic() + PATIENCE
+        if main is not None:
+            solvers = [main.solver, *solvers]
+        stopped = [solver.stop(max(end - time.monotonic(), 0.0)) for solver in solvers]
         if log is not None:
-            finished = main is not None and wanted and ended and not main.session.busy
-            if main is not None and finished:
+            if main is not None and stopped[0] and self.snapshot.frame and not main.session.busy:
                 log.keep(main.session.log())
             log.close()
-            if wanted and not finished:
-                raise InputError(
-                    f"{log.path}: its last increment is missing, the solver did not come to an end"
-                )
-        return all(stopped) and ended
+        return all(stopped)
 
     def _close_autosave(self, clean: bool) -> None:
         if self.autosave is not None:
