@@ -1,18 +1,20 @@
 """Writing a file so that an interruption or a full disk never leaves half of one, and what stood there is respected.
 
 While it is written a file has a hidden name beside its own, and its writer a lock on it (where the system has such) that
-goes with the writer: what a killed program has left can be told from what is being written, and ``clear`` takes it away.
+goes with the writer: what a killed program has left can be told from what is being written. ``clear`` takes it away; a film
+that can be played is offered.
 """
 
 from __future__ import annotations
 
+import logging
 import os
 import re
 import secrets
 import shutil
 import stat
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
@@ -23,6 +25,8 @@ except ImportError:  # Windows: nothing is told apart, and nothing cleared
     LOCKS = False
 else:
     LOCKS = True
+
+log = logging.getLogger(__name__)
 
 LONGEST = 100  # bytes of a name that are repeated in the hidden one; systems take 255, some 143
 SETTLED = (
@@ -102,28 +106,64 @@ def lock(descriptor: int) -> None:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
-def clear(folder: Path, name: str | None = None) -> None:
-    """Remove the hidden files that killed programs have left there, of all files or of one. What cannot be removed stays."""
+def clear(folder: Path, name: str | None = None) -> list[Path]:
+    """Remove the hidden files that killed programs have left there, of all files or of one. What cannot be removed stays.
+
+    A film that its encoder has brought to an end all the same is no longer hidden, but ``NAME.unfinished.mp4``, unless there is
+    such a file; these are returned. What becomes of films is said, in one line each.
+    """
+    start = None if name is None else hidden(folder / name, "").name[1 : -len(".00000000.")]
+    return _clear(folder, lambda found: start is None or found == start)
+
+
+def clear_beginning(folder: Path, prefix: str) -> list[Path]:
+    """The same for all files whose names begin like that."""
+    return _clear(folder, lambda found: found.startswith(prefix))
+
+
+def _clear(folder: Path, belongs: Callable[[str], bool]) -> list[Path]:
+    kept: list[Path] = []
     if not LOCKS:
-        return
-    start = None if name is None else hidden(folder / name, "").name[: -len(".00000000.")]
+        return kept
     with suppress(OSError):
         for path in folder.iterdir():
             found = _HIDDEN.fullmatch(path.name)
-            if found and (start is None or f".{found[1]}" == start):
+            if found and belongs(found[1]):
                 with suppress(OSError):
-                    _remove_if_dead(path)
+                    kept += _clear_if_dead(path, found[1], found[2])
+    return kept
 
 
-def _remove_if_dead(path: Path) -> None:
+def _clear_if_dead(path: Path, name: str, kind: str) -> list[Path]:
     about = path.lstat()
     if not stat.S_ISREG(about.st_mode) or time.time() - about.st_mtime < SETTLED:
-        return
+        return []
     with path.open("rb") as file:
-        fcntl.flock(
-            file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB
-        )  # raises OSError where somebody has it
+        # Raises OSError where somebody has it.
+        fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
+        visible = path.with_name(f"{Path(name).stem}.unfinished.mp4")
+        if kind == "part.mp4" and _is_film(file) and not visible.exists():
+            path.rename(visible)
+            log.warning("what a program that was killed had filmed is now %s", visible)
+            return [visible]
         path.unlink()
+        if kind != "tmp":
+            log.warning("removed half a film, %s, of a program that was killed", path.name)
+    return []
+
+
+def _is_film(file: BinaryIO) -> bool:
+    """Can it be played? The index of an mp4 file, its box "moov", is written last."""
+    while len(head := file.read(8)) == 8:
+        size, kind = int.from_bytes(head[:4], "big"), head[4:]
+        if kind == b"moov":
+            return True
+        if size == 1:  # too large for four bytes
+            size = int.from_bytes(file.read(8), "big") - 8
+        if size < 8:
+            return False
+        file.seek(size - 8, os.SEEK_CUR)
+    return False
 
 
 def try_writing(path: str | os.PathLike[str]) -> None:

@@ -1,4 +1,4 @@
-"""What a crash leaves: while a person works, a scene file is written now and then, and taken away again at a clean end.
+"""What a crash leaves: while a person works, a scene file is written every second, and taken away again at a clean end.
 
 The state after each increment is handed over, which costs nothing, as that state is kept for going back anyway; a thread of
 its own writes the newest. Each running program has files of its own, named by its number, and holds a lock that
@@ -13,6 +13,7 @@ import os
 import re
 import secrets
 import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +26,8 @@ from sandbox.session.beginning import Made, SceneFile
 
 log = logging.getLogger(__name__)
 
-EVERY = 20.0  # [s]
+EVERY = 1.0  # [s]
+SHARE = 0.02  # of the time is spent on writing at most: large scenes are written less often
 PATIENCE = 2.0  # with the writing thread at the end [s]
 ASIDE = "unreadable"  # folder for those that nobody could read, beside the others
 _NAME = re.compile(r"autosave-\d{1,10}-[0-9a-f]{8}\.(scene|toml)")
@@ -139,11 +141,17 @@ class Autosave:
         _remove(self.path)
 
     def _run(self) -> None:
-        while not self._stop.wait(self._every):
+        took, trouble = 0.0, ""
+        while not self._stop.wait(max(self._every, took / SHARE)):
+            begun = time.perf_counter()
             try:
-                self.write()
+                if self.write():
+                    trouble = ""
             except OSError as error:
-                log.warning("autosave: %s", error)
+                if str(error) != trouble:
+                    log.warning("autosave: %s", error)
+                trouble = str(error)
+            took = time.perf_counter() - begun
 
     def write(self) -> bool:
         """Write what is new, if anything is. True if something was written. Raises OSError as the system does."""

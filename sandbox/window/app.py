@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import pygame
 
@@ -22,6 +23,7 @@ from sandbox.window.canvas.brush import Brush
 from sandbox.window.canvas.canvas import Canvas
 from sandbox.window.canvas.inspector import Inspector
 from sandbox.window.display import FRAMES, USUAL, Looks, Rate
+from sandbox.window.film import found_films
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action, action_of
 from sandbox.window.pages import Pages
@@ -64,6 +66,8 @@ def run(
     with requests_to_end() as requests:
         panes = Panes(packing, seed, autosave=autosave.begin(), log=log)
         app = App(panes, looks)
+        if films := found_films(Path()):
+            app.stage.toast(words.FILMS_FOUND.format(names=", ".join(films)))
         clean = False
         try:
             if scene is None:

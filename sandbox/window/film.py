@@ -7,12 +7,14 @@ import logging
 import queue
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pygame
 import pygame.surfarray
 
 from core.errors import InputError
+from core.files import clear_beginning
 from sandbox.draw.text import BODY, Type
 from sandbox.draw.theme import Theme, channels
 from sandbox.record.video import VideoWriter
@@ -26,6 +28,7 @@ FPS = {".mp4": 30.0, ".gif": 20.0}  # a GIF stores whole hundredths of a second
 WAITING = 12  # pictures that the encoder may be behind; then it repeats the last one
 PATIENCE = 60.0  # with the encoder when the window is closed [s]
 RED = 0xE5322D
+PREFIX = "sandbox-"  # of a film's name
 
 
 class Film:
@@ -102,6 +105,11 @@ class Film:
                 return None
 
 
+def found_films(folder: Path) -> list[str]:
+    """What windows that were killed had filmed there, no longer hidden: names."""
+    return [path.name for path in clear_beginning(folder, PREFIX)]
+
+
 class Recorder:
     """The recording key: begins a film of the window, ends it, says its name."""
 
@@ -121,7 +129,7 @@ class Recorder:
                 return words.FILM_BUSY.format(name=self._film.name)
             self._film.end()
             return words.FILM_ENDING.format(name=self._film.name)
-        name = free_stem(f"sandbox-{scene}", tuple(FPS)) + suffix
+        name = free_stem(f"{PREFIX}{scene}", tuple(FPS)) + suffix
         try:
             self._film = Film(name, size)
         except InputError as error:

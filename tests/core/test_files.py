@@ -98,7 +98,7 @@ def test_names_as_long_as_the_system_takes(tmp_path: Path, letter: str) -> None:
 
 @posix
 def test_what_the_dead_have_left_goes_and_all_else_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     mine, other = tmp_path / "film.mp4", tmp_path / "film.gif"
     dead = [files.hidden(mine, kind) for kind in ("tmp", "part.mp4", "part.mkv")]
@@ -119,4 +119,7 @@ def test_what_the_dead_have_left_goes_and_all_else_stays(
     assert of_other.exists()
     files.clear(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted(foreign)
+    assert [record.message.split(",")[0] for record in caplog.records] == [
+        "removed half a film"
+    ] * 2
     files.clear(tmp_path / "nowhere")

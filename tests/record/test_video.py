@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -331,7 +332,9 @@ def test_ctrl_c_at_any_moment_leaves_a_whole_film(tmp_path: Path) -> None:
 
 @pytest.mark.end_to_end
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="signals of POSIX")
-def test_a_killed_program_leaves_the_earlier_file(tmp_path: Path) -> None:
+def test_a_killed_program_leaves_the_earlier_file_and_offers_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
     path = tmp_path / "film.mp4"
     path.write_bytes(b"earlier")
     done = run_writer(
@@ -345,9 +348,14 @@ def test_a_killed_program_leaves_the_earlier_file(tmp_path: Path) -> None:
     )
     assert done.returncode == -signal.SIGKILL
     assert path.read_bytes() == b"earlier"
-    files.SETTLED, before = 0.0, files.SETTLED
-    try:
-        files.clear(tmp_path, path.name)
-    finally:
-        files.SETTLED = before
-    assert list(tmp_path.iterdir()) == [path]
+    unfinished = tmp_path / "film.unfinished.mp4"
+    (part,) = tmp_path.glob(".film.*.part.mp4")
+    end = time.monotonic() + 60.0
+    while b"moov" not in part.read_bytes():  # its encoder ends by itself
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    monkeypatch.setattr(files, "SETTLED", 0.0)
+    assert files.clear(tmp_path, path.name) == [unfinished]
+    assert sorted(tmp_path.iterdir()) == [path, unfinished]
+    assert len(frames_of(unfinished)) == 20
+    assert "film.unfinished.mp4" in caplog.text
