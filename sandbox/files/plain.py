@@ -73,6 +73,7 @@ class Plain:
 
     def read(self, kind: Any, data: Any, path: str, arrays: Arrays) -> Any:
         """The ``kind`` that was written as ``data`` under ``path``; takes its arrays out of ``arrays``. Raises InputError."""
+        kind = _meant(kind)
         origin, inner = get_origin(kind), get_args(kind)
         if origin in (Union, types.UnionType):
             return self._one_of(inner, data, path, arrays)
@@ -139,6 +140,12 @@ class Plain:
         if isinstance(kind, type) and issubclass(kind, Enum):
             return kind(_known(data in [str(one) for one in kind], data, path))
         return _known(type(data) is kind and (kind is not int or abs(data) < 2**63), data, path)
+
+
+def _meant(kind: Any) -> Any:
+    """What a named type stands for: NDArray is one since NumPy 2.5."""
+    meant = getattr(get_origin(kind), "__value__", None)
+    return kind if meant is None else meant[get_args(kind)]
 
 
 @cache
