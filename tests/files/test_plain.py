@@ -14,7 +14,9 @@ from sandbox.files.plain import Plain
 
 Kind = TypeVar("Kind", bound=np.generic)
 # What ``type NDArray[Kind] = ...`` makes, which Python 3.11 cannot say.
-NAMED: Any = SimpleNamespace(__value__=np.ndarray[tuple[Any, ...], np.dtype[Kind]])
+NAMED: Any = SimpleNamespace(
+    __value__=np.ndarray[tuple[Any, ...], np.dtype[Kind]]  # type: ignore[valid-type]
+)
 
 
 @pytest.mark.parametrize("kind", [NDArray[np.float64], GenericAlias(NAMED, (np.float64,))])
