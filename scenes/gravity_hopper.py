@@ -15,7 +15,7 @@ from core import observables
 from core.friction import Friction
 from core.generate import Progress, pack
 from core.packing import Packing
-from core.quasistatic import Quasistatic
+from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import who_took_part
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
@@ -203,10 +203,7 @@ class GravityHopper(Scene):
             return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
         if not latest.at_rest:
             return Remarks(("flowing",) if latest.left else ())
-        bodies = latest.now.body_contacts
-        middle = setup.world["funnel"].position[0] - setup.world["funnel"].home[0]
-        side = np.where(bodies.x < middle, -1, 1)
-        found = standing_arch(setup, latest, side)
+        found = self.arch(setup, latest.now)
         if found is None:
             text = Text("at rest: {count} grains stay on the funnel's sides", count=count)
             return Remarks((text,))
@@ -224,6 +221,10 @@ class GravityHopper(Scene):
             count=count,
         )
         return Remarks((text,), found, {"clog": text})
+
+    def arch(self, setup: Setup, now: Increment) -> NDArray[np.bool_] | None:
+        middle = setup.world["funnel"].position[0] - setup.world["funnel"].home[0]
+        return standing_arch(setup, now, np.where(now.body_contacts.x < middle, -1, 1))
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         return [*super().checks(setup, track), _nothing_hangs(setup, track)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core.arches import arch
 from core.errors import InputError
 from core.generate import Progress, pack
+from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
@@ -165,7 +166,7 @@ class Hopper(Scene):
             return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
         if since < 0.5 * DIAMETER or force <= max(latest.last_exit[1], 0.0):
             return Remarks()
-        found = _arch(setup, latest)
+        found = self.arch(setup, latest.now)
         if since < DIAMETER:
             if found is None:
                 return Remarks()
@@ -182,8 +183,15 @@ class Hopper(Scene):
             )
         return Remarks((text,), found, {"clog": text})
 
+    def arch(self, setup: Setup, now: Increment) -> NDArray[np.bool_] | None:
+        bodies = now.body_contacts
+        body = setup.world.primitives()[1][bodies.primitive]
+        side = np.where(body == setup.world.index("left wall"), -1, 0)
+        side[body == setup.world.index("right wall")] = 1
+        return standing_arch(setup, now, side)
+
     def what_holds(self, setup: Setup, latest: Latest) -> Holding:
-        found = _arch(setup, latest)
+        found = self.arch(setup, latest.now)
         if found is None:
             return super().what_holds(setup, latest)
         return Holding(Text("an arch of {grains} grains holds", grains=int(found.sum())), found)
@@ -205,15 +213,6 @@ def _piston(half_width: float, top: float, way: float) -> RigidBody:
         axis=(0.0, -1.0),
         travel=(-LIFT, way),
     )
-
-
-def _arch(setup: Setup, latest: Latest) -> NDArray[np.bool_] | None:
-    """The grains (N,) of the arch from the left to the right wall of the funnel, or None."""
-    bodies = latest.now.body_contacts
-    body = setup.world.primitives()[1][bodies.primitive]
-    side = np.where(body == setup.world.index("left wall"), -1, 0)
-    side[body == setup.world.index("right wall")] = 1
-    return standing_arch(setup, latest, side)
 
 
 class Shape:
@@ -253,11 +252,11 @@ class Shape:
 
 
 def standing_arch(
-    setup: Setup, latest: Latest, side: NDArray[np.int64]
+    setup: Setup, now: Increment, side: NDArray[np.int64]
 ) -> NDArray[np.bool_] | None:
     """The grains (N,) of the arch over the orifice, or None. ``side`` of each contact with a body: see ``core.arches``."""
     base = min(y for _, y in setup.outline)
-    contacts = latest.now.grain_contacts, latest.now.body_contacts
+    contacts = now.grain_contacts, now.body_contacts
     chain = arch(setup.packing, *contacts, side, base)
     if not len(chain):
         return None

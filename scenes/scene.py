@@ -298,6 +298,11 @@ class Scene(ABC):
         del setup, settings, latest
         return Remarks()
 
+    def arch(self, setup: Setup, now: Increment) -> NDArray[np.bool_] | None:
+        """The grains (N,) of an arch that holds back what is above it, or None: no scene has any unless it knows better."""
+        del setup, now
+        return None
+
     def what_holds(self, setup: Setup, latest: Latest) -> Holding:
         """What a hand cannot overcome that pushes with all its strength and moves nothing: the grains that bear its force."""
         grains = bearing(setup.packing, latest.now, setup.world, setup.handles[0].body)

@@ -91,9 +91,10 @@ def circle_through(start: str) -> list[str]:
 # Each room, and those below it that it may import. A room within another is told from it where it may import less.
 STUDY = "studies.common session draw scenes core"
 ROOMS = {
-    "cli": "window studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
+    "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
     "studies.common record player files session words scenes core",
     "window": "window.solvers record player files draw lessons session words scenes core",
+    "sweep": "studies.common record draw session scenes core",
     "window.solvers": "files session words scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",

@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay, bench, study.
+"""The command line: list, play, record, replay, sweep, bench, study.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -16,6 +16,7 @@ from core.errors import InputError, nearest
 from sandbox import __version__
 from sandbox.cli import arguments, streams, verbs
 from sandbox.cli import study as studies
+from sandbox.cli import sweep as sweeps
 from sandbox.cli.arguments import Parser, argument
 from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
 from scenes.parameter import LARGEST_SEED
@@ -86,7 +87,15 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         commands[name].set_defaults(run=run)
         return commands[name]
 
-    for add in (_add_listing, _add_play, _add_record, _add_replay, _add_bench, _add_study):
+    for add in (
+        _add_listing,
+        _add_play,
+        _add_record,
+        _add_replay,
+        _add_sweep,
+        _add_bench,
+        _add_study,
+    ):
         add(command)
     return parser, commands
 
@@ -104,7 +113,7 @@ def _add_play(command: Command) -> None:
         "scene",
         nargs="?",
         metavar="SCENE",
-        help="name of a scene, or a scene file FILE.scene; without it: a menu",
+        help="name of a scene, a scene file FILE.scene, or a run DIR#ROW of a sweep; without it: a menu",
     )
     _add_scene_options(play)
     _add_compare(play)
@@ -126,7 +135,7 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "scene",
         metavar="SCENE",
-        help="one of the names that `list` prints, or a scene file FILE.scene",
+        help="one of the names that `list` prints, a scene file FILE.scene, or a run DIR#ROW of a sweep",
     )
     record.add_argument(
         "--out",
@@ -171,6 +180,12 @@ def _add_replay(command: Command) -> None:
     _add_gif(replay)
     _add_data(replay)
     _add_look(replay)
+
+
+def _add_sweep(command: Command) -> None:
+    sweeps.add_options(
+        command("sweep", sweeps.sweep, "Run a scene many times, along axes and over seeds: tables.")
+    )
 
 
 def _add_bench(command: Command) -> None:

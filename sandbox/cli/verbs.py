@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sandbox.record.record import Outcome, Output
     from sandbox.session.beginning import SceneFile
     from sandbox.session.session import Session
+    from sandbox.sweep.tables import Made
 
 FILM_SUFFIXES = (".mp4", ".webm", ".gif", ".png")
 PAGE_SUFFIXES = (".html", ".htm")
@@ -59,6 +60,7 @@ def play(options: argparse.Namespace) -> int:
         scene = session.file or session.scene.name
         if session.file and options.compare:
             raise InputError("--compare: open the scene file without it, then press C")
+        options.packing, options.seed = session.packing, session.seed
     environment.require_pygame_ce()
     environment.require_display()
     from sandbox.window import app
@@ -71,6 +73,7 @@ def play(options: argparse.Namespace) -> int:
         settings,
         log=log,
         packings=options.compare or (),
+        script=_row(options.scene) is not None,
         looks=Looks(options.size, options.scale, options.theme, options.view),
     )
 
@@ -87,7 +90,10 @@ def record(options: argparse.Namespace) -> int:
             "--trajectory takes one packing: leave --compare out, or record each alone"
         )
     sessions = _sessions(options)
+    row = _row(options.scene)
     steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
+    if row is not None and not options.steps:
+        steps = row.increments
     from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.record import record as films
 
@@ -96,6 +102,12 @@ def record(options: argparse.Namespace) -> int:
     all_hold = _report(sessions, outcome, output)
     if outcome.interrupted:
         return INTERRUPTED
+    if row is not None and row.state and steps == row.increments:
+        same = sessions[0].state_hash() == row.state
+        print(
+            "the same state as in the table" if same else f"NOT the state of the table, {row.state}"
+        )
+        return OK if same else DIFFERENT
     return OK if all_hold else CHECK_FAILED
 
 
@@ -225,6 +237,12 @@ def _session(options: argparse.Namespace) -> Session:
     """The session that the options describe, checked but not built."""
     from sandbox.session.session import Session
 
+    row = _row(options.scene)
+    if row is not None:
+        for name in ("packing", "seed", "set", "compare"):
+            if getattr(options, name):
+                raise InputError(f"--{name}: a run of a sweep brings its own; leave this out")
+        return Session(row.job.scene, row.job.packing, row.job.seed, row.job.settings)
     if _is_file(options.scene):
         for name, value in (("packing", options.packing), ("seed", options.seed)):
             if value is not None:
@@ -255,6 +273,16 @@ def _sessions(options: argparse.Namespace) -> list[Session]:
         return [Session.from_file(first.file.of_kind(kind)) for kind in kinds]
     name, seed, settings = first.scene.name, first.seed, first.settings
     return [Session(name, kind, seed, settings) for kind in kinds]
+
+
+def _row(scene: str | None) -> Made | None:
+    """The run of a sweep, where the words are DIR#ROW of one."""
+    folder, mark, row = (scene or "").rpartition("#")
+    if not (mark and folder):
+        return None
+    from sandbox.sweep.tables import is_sweep, made
+
+    return made(Path(folder), row) if is_sweep(folder) else None
 
 
 def _is_file(scene: str) -> bool:

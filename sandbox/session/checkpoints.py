@@ -121,6 +121,11 @@ class Checkpoints:
             self._thin()
         self._dense = dense
 
+    def forget_most(self) -> None:
+        """For a run that nobody will go back in: keep no more than a handful from now on."""
+        self._dense = 1
+        self._thin()
+
     def _put(self, place: int, new: Checkpoint) -> None:
         self._kept.insert(place, new)
         self._increments.insert(place, new.increment)

@@ -17,6 +17,7 @@ from sandbox.draw.warmup import Warmup
 from sandbox.files import autosave
 from sandbox.interrupts import requests_to_end
 from sandbox.session.beginning import SceneFile
+from sandbox.session.commands import Protocol
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.arrows import Arrows
 from sandbox.window.canvas.brush import Brush
@@ -53,13 +54,15 @@ def run(
     *,
     log: str | os.PathLike[str] | None = None,
     packings: Sequence[str] = (),
+    script: bool = False,
     looks: Looks = USUAL,
 ) -> int:
     """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
 
-    ``packings``: side by side, if any are named. ``log``: where the log of the last
-    scene started is written, all the time. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the code is 128 and
-    the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot be written.
+    ``packings``: side by side, if any are named. ``script``: the scene's own drive is on from the start. ``log``: where the log
+    of the last scene started is written, all the time. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the
+    code is 128 and the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot
+    be written.
     """
     sys.setswitchinterval(SWITCH)
     # Before there is a window: where nobody else listens, SDL makes of a request to end a click on the close button.
@@ -76,6 +79,8 @@ def run(
                 app.stage.open(scene)
             else:
                 app.stage.start(scene, settings, packings)
+                if script:  # waits for the scene to be built
+                    app.stage.send(Protocol(True))
             while app.stage.running and not requests:
                 app.tick()
             clean = not requests  # who had to go finds the work where it was

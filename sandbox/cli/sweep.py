@@ -1,0 +1,153 @@
+"""The command ``sweep``: from its options to a folder of runs. Light at the top, as the command line is."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from core.errors import InputError
+from sandbox.cli import arguments
+from sandbox.cli.arguments import argument
+from sandbox.cli.exit_codes import FAILED, INTERRUPTED, OK
+
+if TYPE_CHECKING:
+    from sandbox.sweep.request import Request
+
+ASKING = ("vary", "packing", "seeds", "set", "until", "steps", "out")  # what a folder brings itself
+
+
+def add_options(sweep: argparse.ArgumentParser) -> None:
+    """All of them."""
+    text: dict[str, dict[str, Any]] = {
+        "--vary": {
+            "action": "append",
+            "default": [],
+            "metavar": "NAME=A:B:STEP|v1,v2,…",
+            "help": "a parameter along an axis, both ends included; may be repeated: all combinations",
+        },
+        "--packing": {
+            "metavar": "NAME,…",
+            "help": "kinds of grains: regular, auxetic, mixed (default), or several",
+        },
+        "--seeds": {"metavar": "N|A:B", "help": "seeds 1 to N, or A to B (default: 10)"},
+        "--set": {
+            "action": "append",
+            "default": [],
+            "metavar": "NAME=VALUE",
+            "help": "set a parameter of the scene in all runs; may be repeated",
+        },
+        "--until": {
+            "metavar": "clog,…",
+            "help": "what ends a run early: locked, clog, empty (default: locked,empty; under gravity clog as well)",
+        },
+        "--steps": {
+            "type": argument(arguments.whole_number(1, arguments.MOST_STEPS)),
+            "metavar": "N",
+            "help": "increments of a run at most (default: the scene's whole protocol; under gravity 400 R of fall)",
+        },
+        "--out": {"metavar": "DIR", "help": "folder for the tables; what is there is kept"},
+        "--more-seeds": {
+            "type": argument(arguments.whole_number(1, 1_000_000)),
+            "default": 0,
+            "metavar": "N",
+            "help": "so many more than the folder was asked for",
+        },
+        "--jobs": {
+            "type": argument(arguments.whole_number(1, 256)),
+            "default": 2,
+            "metavar": "N",
+            "help": "runs at the same time (default: 2)",
+        },
+        "--executor": {
+            "default": "local",
+            "metavar": "WHERE",
+            "help": "local: processes here (default); dask://HOST:PORT: a Dask cluster",
+        },
+    }
+    sweep.add_argument(
+        "scene",
+        metavar="SCENE|DIR",
+        help="one of the names that `list` prints, or the folder of a sweep to go on with",
+    )
+    for name, rest in text.items():
+        sweep.add_argument(name, **rest)
+    sweep.add_argument(
+        "--parquet",
+        action="store_true",
+        help="write both tables as Parquet as well (extra parquet)",
+    )
+
+
+def sweep(options: argparse.Namespace) -> int:
+    """Carry a sweep out, or go on with one, and print what it came to."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.common.folder import require_scipy
+    from sandbox.sweep import export, summary, workers
+    from sandbox.sweep.sweep import Ways
+    from sandbox.sweep.sweep import sweep as carry_out
+    from sandbox.sweep.tables import Tables
+
+    folder, request = _asked(options)
+    workers.check(options.executor)
+    require_scipy()
+    if options.parquet:
+        export.require_pyarrow()
+    ways = Ways(options.executor, options.jobs)
+    with stop_like_ctrl_c():
+        tables = Tables(folder, request)
+        try:
+            whole = carry_out(tables, ways)
+        finally:
+            tables.close()
+    found = summary.cells(tables)
+    print(summary.as_text(request, found))
+    if not whole:
+        done = f"stopped after {len(tables.runs)} of {request.runs} runs"
+        print(f"{done}: python -m sandbox sweep {folder} goes on from there", file=sys.stderr)
+        return INTERRUPTED
+    if options.parquet:
+        export.write_parquet(folder)
+    print(
+        f"tables: {folder / 'runs.csv'}, avalanches.csv; a run: python -m sandbox play {folder}#ROW"
+    )
+    return FAILED if any(cell.outcomes["failed"] for cell in found) else OK
+
+
+def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
+    """Folder and request, checked, of a new sweep or of one to go on with."""
+    from sandbox.sweep.request import ask
+    from sandbox.sweep.tables import is_sweep, read_request
+    from scenes import registry
+
+    if is_sweep(options.scene):
+        for name in ASKING:
+            if getattr(options, name):
+                raise InputError(
+                    f"--{name}: the folder brings its own; only --more-seeds changes it"
+                )
+        folder = Path(options.scene)
+        return folder, read_request(folder).with_more_seeds(options.more_seeds)
+    if Path(options.scene).is_dir():
+        raise InputError(f"{options.scene}: this folder holds no sweep")
+    registry.get(options.scene)
+    if options.out is None:
+        raise InputError("--out DIR is needed: where shall the tables go?")
+    request = ask(
+        options.scene,
+        options.vary,
+        options.packing,
+        options.seeds or "10",
+        arguments.assignments(options.set),
+        options.until,
+        options.steps,
+    ).with_more_seeds(options.more_seeds)
+    folder = Path(options.out)
+    if is_sweep(options.out):
+        there = read_request(folder)
+        if there.key() != request.key() or there.seeds[1] > request.seeds[1]:
+            raise InputError(
+                f"--out {folder}: another sweep is there; give another folder, or go on with: sweep {folder}"
+            )
+    return folder, request

@@ -1,0 +1,1 @@
+"""Ensembles of runs of one scene: many seeds, parameters along axes, one tidy row a run."""

@@ -1,0 +1,35 @@
+"""The tables of a sweep as Parquet, of what the CSV files hold."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from pathlib import Path
+
+from core.errors import InputError
+from core.files import atomic_write
+from sandbox.sweep.tables import AVALANCHES, RUNS
+
+
+def require_pyarrow() -> None:
+    """Raise InputError, before any work is done, if Parquet cannot be written."""
+    if importlib.util.find_spec("pyarrow") is None:
+        raise InputError(
+            "--parquet needs pyarrow, which is not installed: "
+            "run: python -m pip install 'auxetic-sandbox[parquet]'"
+        )
+
+
+def write_parquet(folder: Path) -> None:
+    """Beside each table the same with the types that its columns have. Raises InputError if it cannot be written."""
+    from pyarrow import csv, parquet
+
+    for name in (RUNS, AVALANCHES):
+        path = (folder / name).with_suffix(".parquet")
+        try:
+            with atomic_write(path) as file:
+                parquet.write_table(csv.read_csv(os.fspath(folder / name)), file)
+        except OSError as error:
+            raise InputError(
+                f"cannot write {path}: {(error.strerror or str(error)).lower()}"
+            ) from error

@@ -1,0 +1,290 @@
+"""What a sweep is asked: a scene, parameters along axes, packings, seeds, and what ends a run early.
+
+Rows are numbered seed by seed, all cells of one seed first, so that more seeds leave every number as it was.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from decimal import Decimal, InvalidOperation
+from itertools import product
+from typing import Any
+
+from core.errors import InputError, did_you_mean
+from sandbox import __version__
+from scenes import registry
+from scenes.parameter import LARGEST_SEED, Value, check_seed, shown
+from scenes.scene import Scene
+
+DATA_VERSION = 1  # of what a run writes down
+MOST_RUNS = 1_000_000
+MOST_CELLS = 10_000
+LOCKED, CLOG, EMPTY = "locked", "clog", "empty"
+ENDINGS = (LOCKED, CLOG, EMPTY)
+# How far a free grain sinks in the longest run under gravity [R]: ten times the height of the usual hopper.
+DEEPEST = 400.0
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A parameter and the values that it takes."""
+
+    name: str
+    values: tuple[Value, ...]
+
+
+@dataclass(frozen=True)
+class Job:
+    """One run. ``row``: its number in the table, from 1."""
+
+    row: int
+    scene: str
+    packing: str
+    seed: int
+    settings: Mapping[str, Value]  # all of them
+    until: tuple[str, ...]
+    steps: int  # increments at most
+
+
+@dataclass(frozen=True)
+class Request:
+    """A whole sweep. Every combination of the axes' values is a cell."""
+
+    scene: str
+    axes: tuple[Axis, ...]
+    packings: tuple[str, ...]
+    seeds: tuple[int, int]  # the first and the last
+    settings: tuple[tuple[str, Value], ...] = ()  # of all cells
+    until: tuple[str, ...] | None = None  # None: see ``endings``
+    steps: int | None = None  # None: see ``longest``
+
+    @property
+    def cells(self) -> list[dict[str, Value]]:
+        """The values along the axes, the last axis changing fastest."""
+        names = [axis.name for axis in self.axes]
+        return [
+            dict(zip(names, values, strict=True))
+            for values in product(*(axis.values for axis in self.axes))
+        ]
+
+    @property
+    def runs(self) -> int:
+        """How many there are."""
+        return self._a_seed * (self.seeds[1] - self.seeds[0] + 1)
+
+    @property
+    def _a_seed(self) -> int:
+        return len(self.packings) * math.prod(len(axis.values) for axis in self.axes)
+
+    def jobs(self) -> Iterator[Job]:
+        """All runs, in the order of their rows."""
+        scene = registry.get(self.scene)
+        given = [scene.settings({**dict(self.settings), **cell}) for cell in self.cells]
+        one = [(packing, settings) for packing in self.packings for settings in given]
+        for row in range(1, self.runs + 1):
+            seed, place = divmod(row - 1, len(one))
+            yield self._job(row, self.seeds[0] + seed, *one[place])
+
+    def job(self, row: int) -> Job:
+        """The run of one row. Raises InputError if there is none."""
+        if not 1 <= row <= self.runs:
+            raise InputError(f"there is no row {row}: use 1 to {self.runs}")
+        seed, place = divmod(row - 1, self._a_seed)
+        packing, cell = divmod(place, self._a_seed // len(self.packings))
+        settings = registry.get(self.scene).settings({**dict(self.settings), **self.cells[cell]})
+        return self._job(row, self.seeds[0] + seed, self.packings[packing], settings)
+
+    def _job(self, row: int, seed: int, packing: str, settings: Mapping[str, Value]) -> Job:
+        scene = registry.get(self.scene)
+        until = endings(scene, settings) if self.until is None else self.until
+        steps = self.steps or longest(scene, settings)
+        return Job(row, self.scene, packing, seed, settings, until, steps)
+
+    def with_more_seeds(self, count: int) -> Request:
+        """The same with so many more. Raises InputError if that is too much."""
+        more = replace(self, seeds=(self.seeds[0], self.seeds[1] + count))
+        _check_size(more)
+        return more
+
+    def key(self) -> str:
+        """Changes with all that its runs depend on, the defaults of its scene too, but not with how many seeds there are."""
+        scene = registry.get(self.scene)
+        asked = {**asdict(self), "seeds": self.seeds[0]}
+        asked["settings"] = sorted(scene.settings(dict(self.settings)).items())
+        words = json.dumps([asked, DATA_VERSION, __version__], sort_keys=True)
+        return hashlib.sha256(words.encode()).hexdigest()[:16]
+
+    def data(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return {
+            **asdict(self),
+            "axes": [{"name": axis.name, "values": list(axis.values)} for axis in self.axes],
+            "settings": dict(self.settings),
+        }
+
+    @classmethod
+    def of(cls, data: Mapping[str, Any]) -> Request:
+        """What ``data`` wrote. Raises InputError if it is none."""
+        try:
+            until = data["until"]
+            request = cls(
+                str(data["scene"]),
+                tuple(Axis(str(axis["name"]), tuple(axis["values"])) for axis in data["axes"]),
+                tuple(map(str, data["packings"])),
+                (check_seed(data["seeds"][0]), check_seed(data["seeds"][1])),
+                tuple(data["settings"].items()),
+                None if until is None else tuple(map(str, until)),
+                data["steps"],
+            )
+        except (KeyError, TypeError, AttributeError, IndexError) as error:
+            raise InputError(f"not the request of a sweep ({error!r})") from None
+        check(request)
+        return request
+
+
+def endings(scene: Scene, settings: Mapping[str, Value]) -> tuple[str, ...]:
+    """What ends a run unless something else is asked for: under gravity a clog as well, which nothing breaks by itself."""
+    return ENDINGS if scene.ingredients(settings).gravity else (LOCKED, EMPTY)
+
+
+def longest(scene: Scene, settings: Mapping[str, Value]) -> int:
+    """Increments of a run at most: the scripted drive, or under gravity until a free grain has sunk by ``DEEPEST``."""
+    if scene.ingredients(settings).gravity and "fall" in settings:
+        return math.ceil(DEEPEST / float(settings["fall"]))
+    return scene.steps(settings)
+
+
+def check(request: Request) -> None:
+    """Raises InputError for a request that cannot be carried out, of too many runs, or with a cell that its scene refuses."""
+    scene = registry.get(request.scene)
+    _check_size(request)
+    for packing in request.packings:
+        scene.check_packing(packing)
+    fixed = dict(request.settings)
+    for axis in request.axes:
+        if axis.name in fixed:
+            raise InputError(f"{axis.name} is both varied and set: leave one of them out")
+    for cell in request.cells:
+        try:
+            scene.settings({**fixed, **cell})
+        except InputError as error:
+            if not cell:
+                raise
+            where = ", ".join(f"{name}={value:g}" for name, value in cell.items())
+            raise InputError(f"at {where}: {error}") from None
+
+
+def _check_size(request: Request) -> None:
+    cells = math.prod(len(axis.values) for axis in request.axes)
+    if cells > MOST_CELLS:
+        raise InputError(f"{cells:,} cells are too many: use {MOST_CELLS:,} at most")
+    if request.runs > MOST_RUNS:
+        raise InputError(f"{request.runs:,} runs are too many: use {MOST_RUNS:,} at most")
+
+
+# From words.
+
+
+def ask(
+    scene: str,
+    vary: Sequence[str],
+    packings: str | None,
+    seeds: str,
+    settings: Mapping[str, object],
+    until: str | None = None,
+    steps: int | None = None,
+) -> Request:
+    """The request that such words make, checked. Raises InputError."""
+    known = registry.get(scene)
+    axes = tuple(axis(text, known) for text in vary)
+    names = [each.name for each in axes]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"--vary: {name} is varied twice")
+    request = Request(
+        known.name,
+        axes,
+        _kinds(packings, known),
+        seed_range(seeds),
+        tuple((name, _parsed(known, name, value)) for name, value in settings.items()),
+        None if until is None else _endings(until),
+        steps,
+    )
+    check(request)
+    return request
+
+
+def axis(text: str, scene: Scene) -> Axis:
+    """``NAME=A:B:STEP``, both ends included, or ``NAME=v1,v2,…``. Raises InputError."""
+    name, equals, given = (part.strip() for part in text.partition("="))
+    if not (name and equals and given):
+        raise InputError(f"--vary {text}: write NAME=A:B:STEP or NAME=v1,v2,…")
+    words = _span(text, given) if ":" in given else given.split(",")
+    values = tuple(_parsed(scene, name, word) for word in words)
+    if len(set(values)) < len(values):
+        raise InputError(f"--vary {text}: a value comes twice")
+    return Axis(name, values)
+
+
+def _parsed(scene: Scene, name: str, value: object) -> Value:
+    """A value, or what was typed for it, as the parameter has it."""
+    for parameter in scene.parameters:
+        if parameter.name == name:
+            return parameter.parse(value) if isinstance(value, str) else parameter.check(value)
+    names = [p.name for p in scene.parameters]
+    hint = did_you_mean(name, names) or f"; there are: {', '.join(names)}"
+    raise InputError(f"scene {scene.name} has no parameter {name!r}{hint}")
+
+
+def _span(text: str, given: str) -> list[str]:
+    """From A to B, both included, by STEP: in decimals as they are written, so that 0:1:0.1 ends with 1."""
+    try:
+        first, last, step = (Decimal(part.strip()) for part in given.split(":"))
+        count = int((last - first) / step) + 1
+    except (ValueError, ArithmeticError, InvalidOperation):
+        raise InputError(f"--vary {text}: write A:B:STEP, three numbers, STEP not 0") from None
+    if count < 1 or (last - first) / step < 0:
+        raise InputError(f"--vary {text}: the range is empty, as STEP leads away from B")
+    if count > MOST_CELLS:
+        raise InputError(
+            f"--vary {text}: {count:,} values are too many: use {MOST_CELLS:,} at most"
+        )
+    return [str(first + k * step) for k in range(count)]
+
+
+def seed_range(text: str) -> tuple[int, int]:
+    """``N``: seeds 1 to N; ``A:B``: from A to B, both included. Raises InputError."""
+    words = text.split(":")
+    try:
+        numbers = [int(word) for word in words]
+    except ValueError:
+        numbers = []
+    if len(numbers) not in (1, 2):
+        raise InputError(f"--seeds {shown(text)}: write how many, or FIRST:LAST")
+    first, last = numbers if len(numbers) == 2 else (1, numbers[0])
+    if not 0 <= first <= last <= LARGEST_SEED:
+        raise InputError(f"--seeds {text}: the range is empty, or not within 0 and 2^63 - 1")
+    return first, last
+
+
+def _kinds(text: str | None, scene: Scene) -> tuple[str, ...]:
+    if text is None:
+        return ("mixed" if "mixed" in scene.packings else scene.packings[0],)
+    kinds = tuple(scene.check_packing(word.strip()) for word in text.split(","))
+    if len(set(kinds)) < len(kinds):
+        raise InputError(f"--packing {text}: a packing comes twice")
+    return kinds
+
+
+def _endings(text: str) -> tuple[str, ...]:
+    words = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
+    for word in words:
+        if word not in ENDINGS:
+            raise InputError(
+                f"--until {shown(word)}: use {', '.join(ENDINGS)}{did_you_mean(word, ENDINGS)}"
+            )
+    return words

@@ -1,0 +1,189 @@
+"""The folder of a sweep: its request, and two tables that grow by a row as a run ends, whatever may end the program.
+
+A run's avalanches are written before its own row, so that a row in runs.csv says that all of it is there. What a kill has left
+of a line, avalanches without their run, and runs that failed are dropped when the folder is opened again. At the end both
+tables are written anew in the order of the request.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from core.errors import InputError
+from sandbox import __version__
+from sandbox.interrupts import deferred
+from sandbox.studies.common.folder import machine, prepare_folder, write_text
+from sandbox.sweep.outcome import AVALANCHE, FAILED, Found, columns
+from sandbox.sweep.request import Job, Request
+
+FORMAT, VERSION = "auxetic-sandbox sweep", 1
+ASKED, RUNS, AVALANCHES, LOCK = "sweep.json", "runs.csv", "avalanches.csv", ".lock"
+Row = Mapping[str, Any]  # as a file has it: text by column
+
+
+def is_sweep(text: str) -> bool:
+    """Is that the folder of a sweep?"""
+    return (Path(text) / ASKED).is_file()
+
+
+def read_request(folder: Path) -> Request:
+    """What a folder was asked. Raises InputError if it is none of a sweep, or its runs would come out otherwise now."""
+    path = folder / ASKED
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data["format"] != FORMAT or data["version"] != VERSION:
+            raise InputError(f"{path}: this is no sweep of this program")
+        request, key = Request.of(data["request"]), str(data["key"])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: damaged ({error!r})") from None
+    if key != request.key():
+        made = data.get("versions", {}).get("auxetic-sandbox", "?")
+        raise InputError(
+            f"{folder} was begun by version {made}, whose scenes were others: begin a new folder with version {__version__}"
+        )
+    return request
+
+
+@dataclass(frozen=True)
+class Made:
+    """A run of a sweep, and what its row says if there is one already."""
+
+    job: Job
+    increments: int  # at most, where there is none
+    state: str = ""
+
+
+def made(folder: Path, text: str) -> Made:
+    """The run that a row of a folder's table stands for. Raises InputError if there is none."""
+    request = read_request(folder)
+    if not text.isdecimal():
+        raise InputError(f"{folder}#{text}: after the # comes the number of a row")
+    job = request.job(int(text))
+    for row in read_rows(folder / RUNS, list(columns(request.scene))):
+        if row["row"] == text and row["outcome"] != FAILED:
+            return Made(job, int(row["increments"]), row["state"])
+    return Made(job, job.steps)
+
+
+class Tables:
+    """Both tables of a folder, open for rows. Only one program at a time may do that."""
+
+    def __init__(self, folder: Path, request: Request) -> None:
+        """Begin a folder, or go on with one. Raises InputError where it is somebody else's, or cannot be written."""
+        self.folder, self.request = folder, request
+        prepare_folder(str(folder), "")
+        self._lock = FileLock(folder / LOCK)
+        try:
+            self._lock.acquire(timeout=0)
+        except Timeout:
+            raise InputError(f"{folder}: another program is at work on this sweep") from None
+        self._run_columns = list(columns(request.scene))
+        self._avalanche_columns = [*AVALANCHE, *(axis.name for axis in request.axes)]
+        self.runs = {
+            int(row["row"]): row
+            for row in read_rows(folder / RUNS, self._run_columns)
+            if row["outcome"] != FAILED
+        }
+        self.avalanches: dict[int, list[Row]] = {}
+        for row in read_rows(folder / AVALANCHES, self._avalanche_columns):
+            mine = self.avalanches.setdefault(int(row["row"]), [])
+            if int(row["row"]) in self.runs and int(row["avalanche"]) == len(mine) + 1:
+                mine.append(row)
+        self._write_request()
+        self.write_all()
+
+    def close(self) -> None:
+        """Let others at it."""
+        self._lock.release()
+
+    def add(self, found: Found) -> None:
+        """A finished run: its avalanches, then its row."""
+        row = int(found.run["row"])
+        axes = {axis.name: found.run[axis.name] for axis in self.request.axes}
+        some = [as_read({**avalanche, **axes}) for avalanche in found.avalanches]
+        self.avalanches[row], self.runs[row] = some, as_read(found.run)
+        with deferred():
+            _append(self.folder / AVALANCHES, _lines(some, self._avalanche_columns))
+            _append(self.folder / RUNS, _lines([self.runs[row]], self._run_columns))
+
+    def write_all(self) -> None:
+        """Both tables anew, in the order of the request."""
+        ordered = sorted(self.runs)
+        falls = [fall for row in ordered for fall in self.avalanches.get(row, ())]
+        for name, rows, names in (
+            (AVALANCHES, falls, self._avalanche_columns),
+            (RUNS, [self.runs[row] for row in ordered], self._run_columns),
+        ):
+            header = {name: name for name in names}
+            write_text(self.folder / name, _lines([header, *rows], names))
+
+    def _write_request(self) -> None:
+        data = {
+            "format": FORMAT,
+            "version": VERSION,
+            "key": self.request.key(),
+            "request": self.request.data(),
+            **machine(),
+            "columns": {RUNS: columns(self.request.scene), AVALANCHES: AVALANCHE},
+        }
+        write_text(self.folder / ASKED, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+
+
+def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
+    """The whole lines of a table that has these columns. Raises InputError for one with others; none there is an empty one."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    whole = text[: text.rfind("\n") + 1]
+    rows = list(csv.reader(io.StringIO(whole, newline="")))
+    if not rows:
+        return []
+    if rows[0] != list(names):
+        raise InputError(f"{path}: these are not the columns of this sweep; begin a new folder")
+    found = [dict(zip(names, row, strict=True)) for row in rows[1:] if len(row) == len(names)]
+    return [row for row in found if row["row"].isdigit()]
+
+
+def as_read(row: Mapping[str, object]) -> Row:
+    """A row as it will be read again: floats to the same bits."""
+    return {name: str(value) for name, value in row.items()}
+
+
+def _append(path: Path, lines: str) -> None:
+    """Whole lines in one piece."""
+    if not lines:
+        return
+    try:
+        with path.open("ab", buffering=0) as file:
+            size = os.fstat(file.fileno()).st_size
+            data = lines.encode()
+            if file.write(data) < len(data):  # a disk that has room for a part takes that
+                file.truncate(size)
+                raise OSError(28, "no room left on the disk")
+    except OSError as error:
+        raise InputError(
+            f"cannot write {path}: {(error.strerror or str(error)).lower()}"
+        ) from error
+
+
+def _lines(rows: Iterable[Row], names: Sequence[str]) -> str:
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([row[name] for name in names] for row in rows)
+    return text.getvalue()

@@ -1,0 +1,260 @@
+"""Sweeps carried out: the same tables however, killed at any byte, and any row again to the last bit."""
+
+from __future__ import annotations
+
+import csv
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("scipy")
+
+from core.errors import InputError
+from sandbox.cli import main as cli
+from sandbox.session.session import Session
+from sandbox.studies.common.batch import Workers
+from sandbox.sweep import outcome, summary, sweep
+from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
+from sandbox.sweep.request import Job, Request, ask
+from sandbox.sweep.sweep import Ways
+from sandbox.sweep.tables import AVALANCHES, RUNS, Tables, made, read_request
+
+REPOSITORY = Path(__file__).parents[2]
+SMALL = {"grains": 24, "width": 10.0, "shake": 0.0, "fall": 0.3}
+WORDS = ["gravity_hopper", "--vary", "orifice=1.5,3.5", "--packing", "regular", "--seeds", "3"]
+WORDS += [word for name, value in SMALL.items() for word in ("--set", f"{name}={value}")]
+
+
+def small(seeds: str = "3", **more: object) -> Request:
+    """Runs of a tenth of a second."""
+    return ask("gravity_hopper", ["orifice=1.5,3.5"], "regular", seeds, {**SMALL, **more})
+
+
+def fake(job: Job) -> Found:
+    """A run that costs nothing: the wider, the more leave."""
+    wide = float(job.settings["orifice"]) > 2.0
+    ended, out = (EMPTIED, 9) if wide else (CLOGGED, job.seed)
+    row: dict[str, Any] = {"row": job.row, "seed": job.seed, "packing": job.packing}
+    fall = {**row, "avalanche": 1, "size": out, "ended": ended, "arch": "", "increments": 5}
+    row |= {**job.settings, **dict.fromkeys(outcome.AFTER, 0), "why": "", "arch": ""}
+    return Found({**row, "outcome": ended, "out": out, "seconds": job.row}, (fall,))
+
+
+@pytest.fixture
+def in_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs that cost nothing, by any executor: here of threads."""
+
+    @contextmanager
+    def threads(executor: str, jobs: int) -> Iterator[tuple[Workers, int]]:
+        with ThreadPoolExecutor(jobs) as pool:
+            yield pool, jobs
+
+    monkeypatch.setattr(sweep, "workers", threads)
+    monkeypatch.setattr(sweep, "carry_out", fake)
+    monkeypatch.setattr(sweep, "compile_all", lambda _: None)
+
+
+def go(folder: Path, request: Request, jobs: int = 2) -> Tables:
+    tables = Tables(folder, request)
+    try:
+        assert sweep.sweep(tables, Ways(jobs=jobs))
+    finally:
+        tables.close()
+    return tables
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def compared(folder: Path) -> list[dict[str, str]]:
+    """All that another run of the same request may not change."""
+    runs = rows(folder / RUNS)
+    for row in runs:
+        row.pop("seconds")
+    return runs + rows(folder / AVALANCHES)
+
+
+# Outcomes.
+
+
+def test_outcomes_and_avalanches_of_drains() -> None:
+    narrow, wide = (carry_out(job) for job in small("1").jobs())
+    assert narrow.run["outcome"] in (CLOGGED, NEVER)
+    assert int(narrow.run["arch"]) >= 1
+    assert wide.run["outcome"] == EMPTIED
+    assert int(wide.run["out"]) + int(wide.run["left"]) == wide.run["initial"]
+    assert [fall["size"] for fall in wide.avalanches] == [wide.run["out"]]
+    assert wide.avalanches[0]["ended"] == EMPTIED
+    assert wide.run["why"] == wide.run["arch"] == ""
+    (short,) = (
+        carry_out(job) for job in ask("gravity_hopper", [], "regular", "1", SMALL, steps=3).jobs()
+    )
+    assert (short.run["outcome"], short.run["why"]) == (CENSORED, "after 3 increments")
+
+
+def test_a_run_ends_as_soon_as_it_is_known() -> None:
+    job = small("1").job(1)
+    session = Session(job.scene, job.packing, job.seed, job.settings)
+    watch = outcome.drive(session, job)
+    assert watch.resting == AT_REST
+    assert not session.run.course.moving
+    assert len(session.run.checkpoints) < 12
+
+
+def test_shaken_grains_leave_avalanche_by_avalanche() -> None:
+    request = ask(
+        "gravity_hopper", [], "regular", "1", {**SMALL, "orifice": 2.0, "shake": 0.8}, "empty", 420
+    )
+    found = carry_out(request.job(1))
+    assert len(found.avalanches) > 1
+    assert sum(int(fall["size"]) for fall in found.avalanches) == found.run["out"]
+    assert {fall["ended"] for fall in found.avalanches[:-1]} == {CLOGGED}
+
+
+def test_a_hand_locks_or_runs_through() -> None:
+    settings = {"grains": 24, "width": 8.0, "angle": 20.0, "stroke": 2.0, "orifice": 1.0}
+    request = ask("hopper", ["hand_strength=0.5,machine"], "regular", "1", settings)
+    assert [carry_out(job).run["outcome"] for job in request.jobs()] == ["locked", "ran through"]
+
+
+# Tables.
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_the_order_is_that_of_the_request(tmp_path: Path) -> None:
+    go(tmp_path / "one", small(), jobs=1)
+    tables = go(tmp_path / "three", small(), jobs=3)
+    assert compared(tmp_path / "one") == compared(tmp_path / "three")
+    assert [row["row"] for row in rows(tmp_path / "one" / RUNS)] == list("123456")
+    cells = summary.cells(tables)
+    assert [(cell.values, cell.outcomes) for cell in cells] == [
+        ((1.5,), {CLOGGED: 3}),
+        ((3.5,), {EMPTIED: 3}),
+    ]
+    assert cells[0].sizes[0].tolist() == [1.0, 2.0, 3.0]
+    assert cells[0].sizes[1].all()
+    assert not cells[1].sizes[1].any()
+    assert "6 of 6 runs" in summary.as_text(tables.request, cells)
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_a_table_that_was_cut_anywhere_is_whole_again(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    go(folder, small())
+    whole = compared(folder)
+    runs, falls = ((folder / name).read_bytes() for name in (RUNS, AVALANCHES))
+    for cut in range(0, len(runs), 97):
+        (folder / RUNS).write_bytes(runs[:cut])
+        (folder / AVALANCHES).write_bytes(falls[: len(falls) * (cut + 200) // len(runs)])
+        go(folder, small())
+        assert compared(folder) == whole
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_a_folder_goes_on_and_grows(tmp_path: Path) -> None:
+    go(tmp_path, small())
+    before = compared(tmp_path)
+    more = read_request(tmp_path).with_more_seeds(1)
+    go(tmp_path, more)
+    assert [row for row in compared(tmp_path) if int(row["row"]) <= 6] == before
+    assert len(rows(tmp_path / RUNS)) == 8
+    assert read_request(tmp_path) == more
+    about = json.loads((tmp_path / "sweep.json").read_text())
+    assert list(about["columns"][RUNS]) == list(rows(tmp_path / RUNS)[0])
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_what_fails_is_a_row_that_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def one_fails(job: Job) -> Found:
+        if job.row == 2:
+            raise InputError("no room")
+        return fake(job)
+
+    monkeypatch.setattr(sweep, "carry_out", one_fails)
+    go(tmp_path, small())
+    assert [row["why"] for row in rows(tmp_path / RUNS)] == ["", "no room", "", "", "", ""]
+    monkeypatch.setattr(sweep, "carry_out", fake)
+    go(tmp_path, small())
+    assert [row["why"] for row in rows(tmp_path / RUNS)] == [""] * 6
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_one_program_at_a_time_and_no_other_sweep(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tables = Tables(tmp_path, small())
+    with pytest.raises(InputError, match="another program"):
+        Tables(tmp_path, small())
+    tables.close()
+    assert cli.main(["sweep", "gravity_hopper", "--out", str(tmp_path)]) == 2
+    assert cli.main(["sweep", str(tmp_path), "--seeds", "4"]) == 2
+    (tmp_path / "sweep.json").write_text("{")
+    assert cli.main(["sweep", str(tmp_path)]) == 2
+    said = capsys.readouterr().err.splitlines()
+    assert ["another sweep" in said[0], "--seeds" in said[1], "damaged" in said[2]] == [True] * 3
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_a_process_that_dies_takes_no_run_with_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was under way is carried out again; a run whose process dies each time fails, and the others do not."""
+    deaths = {1: 1, 3: sweep.TRIES}
+
+    def deadly(job: Job) -> Found:
+        if deaths.get(job.row, 0):
+            deaths[job.row] -= 1
+            raise BrokenProcessPool
+        return fake(job)
+
+    monkeypatch.setattr(sweep, "carry_out", deadly)
+    go(tmp_path, small())
+    assert [row["why"] for row in rows(tmp_path / RUNS)] == ["", "", sweep.LOST, "", "", ""]
+
+
+# The command.
+
+
+def command(folder: Path, *words: str) -> list[str]:
+    return [sys.executable, "-m", "sandbox", "sweep", *WORDS, "--out", str(folder), *words]
+
+
+@pytest.mark.end_to_end
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="a signal of POSIX")
+def test_killed_and_resumed_by_others_the_rows_are_the_same_and_so_are_the_bits(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    killed = subprocess.Popen(command(tmp_path / "a", "--jobs", "1"), cwd=REPOSITORY, stderr=-3)
+    runs = tmp_path / "a" / RUNS
+    while killed.poll() is None and (not runs.exists() or runs.read_bytes().count(b"\n") < 3):
+        time.sleep(0.01)
+    killed.kill()
+    killed.wait()
+    assert cli.main(["sweep", str(tmp_path / "a"), "--jobs", "1"]) == 0
+    assert "6 of 6 runs" in capsys.readouterr().out
+    alone = Tables(tmp_path / "b", read_request(tmp_path / "a"))
+    for job in alone.request.jobs():
+        alone.add(carry_out(job))
+    alone.write_all()
+    assert compared(tmp_path / "a") == compared(tmp_path / "b")
+    table = tmp_path / "run.csv"
+    assert cli.main(["record", f"{tmp_path / 'a'}#3", "--data", str(table)]) == 0
+    assert "the same state as in the table" in capsys.readouterr().out
+    assert len(rows(table)) == int(rows(tmp_path / "a" / RUNS)[2]["increments"]) + 1
+    for row, said in (("99", "use 1 to 6"), ("x", "number of a row")):
+        with pytest.raises(InputError, match=said):
+            made(tmp_path / "a", row)
