@@ -92,7 +92,7 @@ def circle_through(start: str) -> list[str]:
 STUDY = "studies.common session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "studies.common record player files session words scenes core",
+    "studies.clogging studies.common record player files session words scenes core",
     "window": "window.solvers record player files draw lessons session words scenes core",
     "sweep": "studies.common record draw session scenes core",
     "window.solvers": "files session words scenes core",
@@ -103,6 +103,7 @@ ROOMS = {
     "studies.stability": STUDY,
     "studies.paper": f"studies.hand {STUDY}",
     "studies.classics": STUDY,
+    "studies.clogging": f"sweep studies.classics {STUDY}",
     "studies.bench": STUDY,
     "studies.hand": f"lessons {STUDY}",
     "studies.common": "core",

@@ -216,7 +216,7 @@ def _add_study(command: Command) -> None:
         "--only",
         nargs="+",
         metavar="NAME",
-        help="these claims (paper) or cases (classics) instead of all",
+        help="these claims (paper), cases (classics) or parts (clogging) instead of all",
     )
     study.add_argument(
         "--scene", nargs="+", metavar="NAME", help="these scenes instead of all (accuracy)"
@@ -232,6 +232,11 @@ def _add_study(command: Command) -> None:
         default=2,
         metavar="N",
         help="runs at the same time (default: 2)",
+    )
+    study.add_argument(
+        "--executor",
+        metavar="WHERE",
+        help="local: processes here (default); dask://HOST:PORT: a Dask cluster (clogging)",
     )
 
 

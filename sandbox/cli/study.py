@@ -129,6 +129,30 @@ def classics(options: argparse.Namespace) -> int:
     return FAILED if done.failures or wrong else OK
 
 
+def clogging(options: argparse.Namespace) -> int:
+    """Clogging as an experiment: ensembles of drains and pushes."""
+    from sandbox.interrupts import stop_like_ctrl_c
+    from sandbox.studies.clogging import study
+    from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
+    from sandbox.sweep import workers
+    from sandbox.sweep.sweep import Ways
+
+    parts = study.choose(options.only)
+    require_matplotlib()
+    require_scipy()
+    ways = Ways(workers.check(options.executor or workers.LOCAL), options.jobs)
+    folder = prepare_folder(options.out, "")
+    with stop_like_ctrl_c():
+        done = study.study(folder, ways, parts, quick=options.quick)
+    if done.interrupted:
+        return stopped(done.runs)
+    width = max((len(claim.name) for claim, _, _, _ in done.verdicts), default=0)
+    for claim, check, verdict, _ in done.verdicts:
+        print(f"{claim.name:<{width}}  {verdict:<15}  {check.quantity}: {check.estimate.value:.4g}")
+    print(f"tables, numbers and pictures: {folder / 'clogging.md'}, results.json, PART/index.html")
+    return FAILED if done.failed else OK
+
+
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
     print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
@@ -149,5 +173,11 @@ STUDIES: dict[str, Study] = {
     "stability": stability,
     "hand": hand,
     "classics": classics,
+    "clogging": clogging,
 }
-OWN_OPTIONS = {"only": ("paper", "classics"), "scene": ("accuracy",), "estimate": ("accuracy",)}
+OWN_OPTIONS = {
+    "only": ("paper", "classics", "clogging"),
+    "scene": ("accuracy",),
+    "estimate": ("accuracy",),
+    "executor": ("clogging",),
+}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from sandbox.cli.exit_codes import FAILED, INTERRUPTED, OK
 
 if TYPE_CHECKING:
     from sandbox.sweep.request import Request
+    from sandbox.sweep.summary import Cell
 
 ASKING = ("vary", "packing", "seeds", "set", "until", "steps", "out")  # what a folder brings itself
 
@@ -74,6 +76,16 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
     for name, rest in text.items():
         sweep.add_argument(name, **rest)
     sweep.add_argument(
+        "--pictures",
+        action="store_true",
+        help="draw probabilities and avalanche sizes, and write index.html (extra study)",
+    )
+    sweep.add_argument(
+        "--players",
+        action="store_true",
+        help="the same, and a page that plays one run of each cell",
+    )
+    sweep.add_argument(
         "--parquet",
         action="store_true",
         help="write both tables as Parquet as well (extra parquet)",
@@ -83,7 +95,7 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
 def sweep(options: argparse.Namespace) -> int:
     """Carry a sweep out, or go on with one, and print what it came to."""
     from sandbox.interrupts import stop_like_ctrl_c
-    from sandbox.studies.common.folder import require_scipy
+    from sandbox.studies.common.folder import require_matplotlib, require_scipy
     from sandbox.sweep import export, summary, workers
     from sandbox.sweep.sweep import Ways
     from sandbox.sweep.sweep import sweep as carry_out
@@ -94,6 +106,8 @@ def sweep(options: argparse.Namespace) -> int:
     require_scipy()
     if options.parquet:
         export.require_pyarrow()
+    if options.pictures or options.players:
+        require_matplotlib()
     ways = Ways(options.executor, options.jobs)
     with stop_like_ctrl_c():
         tables = Tables(folder, request)
@@ -109,10 +123,22 @@ def sweep(options: argparse.Namespace) -> int:
         return INTERRUPTED
     if options.parquet:
         export.write_parquet(folder)
+    if options.pictures or options.players:
+        print(f"page: {_draw(folder, request, found, options.players)}")
     print(
         f"tables: {folder / 'runs.csv'}, avalanches.csv; a run: python -m sandbox play {folder}#ROW"
     )
     return FAILED if any(cell.outcomes["failed"] for cell in found) else OK
+
+
+def _draw(folder: Path, request: Request, found: Sequence[Cell], players: bool) -> Path:
+    """Pictures and the page that shows them, with a player for each cell if wanted."""
+    from sandbox.sweep import page
+    from sandbox.sweep.pictures import draw_all
+
+    played = page.write_players(folder, request, found) if players else {}
+    page.write_page(folder, request, found, draw_all(request, found, folder), played)
+    return folder / page.PAGE
 
 
 def _asked(options: argparse.Namespace) -> tuple[Path, Request]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.arrays import Floats
 from sandbox.studies.common.statistics import Share
@@ -43,7 +44,7 @@ class Cell:
         return np.array([float(row[name]) for row in self.runs if row[name] != ""])
 
     @property
-    def sizes(self) -> tuple[Floats, Floats]:
+    def sizes(self) -> tuple[Floats, NDArray[np.bool_]]:
         """Sizes of avalanches (A,), and whether a clog ended each, (A,): others are lower bounds."""
         sizes = np.array([float(row["size"]) for row in self.avalanches])
         return sizes, np.array([row["ended"] == CLOGGED for row in self.avalanches], dtype=bool)

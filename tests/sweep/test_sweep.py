@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,12 +19,13 @@ pytest.importorskip("scipy")
 from core.errors import InputError
 from sandbox.cli import main as cli
 from sandbox.session.session import Session
-from sandbox.studies.common.batch import Workers
+from sandbox.studies.common.batch import LOST
 from sandbox.sweep import outcome, summary, sweep
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
 from sandbox.sweep.request import Job, Request, ask
 from sandbox.sweep.sweep import Ways
 from sandbox.sweep.tables import AVALANCHES, RUNS, Tables, made, read_request
+from tests.sweep.conftest import fake
 
 REPOSITORY = Path(__file__).parents[2]
 SMALL = {"grains": 24, "width": 10.0, "shake": 0.0, "fall": 0.3}
@@ -38,30 +36,6 @@ WORDS += [word for name, value in SMALL.items() for word in ("--set", f"{name}={
 def small(seeds: str = "3", **more: object) -> Request:
     """Runs of a tenth of a second."""
     return ask("gravity_hopper", ["orifice=1.5,3.5"], "regular", seeds, {**SMALL, **more})
-
-
-def fake(job: Job) -> Found:
-    """A run that costs nothing: the wider, the more leave."""
-    wide = float(job.settings["orifice"]) > 2.0
-    ended, out = (EMPTIED, 9) if wide else (CLOGGED, job.seed)
-    row: dict[str, Any] = {"row": job.row, "seed": job.seed, "packing": job.packing}
-    fall = {**row, "avalanche": 1, "size": out, "ended": ended, "arch": "", "increments": 5}
-    row |= {**job.settings, **dict.fromkeys(outcome.AFTER, 0), "why": "", "arch": ""}
-    return Found({**row, "outcome": ended, "out": out, "seconds": job.row}, (fall,))
-
-
-@pytest.fixture
-def in_threads(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs that cost nothing, by any executor: here of threads."""
-
-    @contextmanager
-    def threads(executor: str, jobs: int) -> Iterator[tuple[Workers, int]]:
-        with ThreadPoolExecutor(jobs) as pool:
-            yield pool, jobs
-
-    monkeypatch.setattr(sweep, "workers", threads)
-    monkeypatch.setattr(sweep, "carry_out", fake)
-    monkeypatch.setattr(sweep, "compile_all", lambda _: None)
 
 
 def go(folder: Path, request: Request, jobs: int = 2) -> Tables:
@@ -176,6 +150,28 @@ def test_a_folder_goes_on_and_grows(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("in_threads")
+def test_a_page_shows_the_cells_and_how_to_open_a_run_of_each(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("pyarrow")
+    words = ["--vary", "fall=0.1,0.3", "--pictures", "--parquet", "--out", str(tmp_path)]
+    assert cli.main(["sweep", *WORDS[:-2], *words]) == 0
+    assert "index.html" in capsys.readouterr().out
+    page = (tmp_path / "index.html").read_text()
+    assert page.count("<td") == 4
+    for row in range(1, 5):
+        assert f"play {tmp_path}#{row}<" in page
+    for name in re.findall(r'<img src="(.+?)"', page):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
+    assert page.count("<img") == 2  # three avalanches a cell are too few for the third
+    from pyarrow import parquet
+
+    table = parquet.read_table(tmp_path / "runs.parquet")
+    assert table.column("orifice").to_pylist() == [1.5, 1.5, 3.5, 3.5] * 3
+
+
+@pytest.mark.usefixtures("in_threads")
 def test_what_fails_is_a_row_that_is_tried_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -223,7 +219,7 @@ def test_a_process_that_dies_takes_no_run_with_it(
 
     monkeypatch.setattr(sweep, "carry_out", deadly)
     go(tmp_path, small())
-    assert [row["why"] for row in rows(tmp_path / RUNS)] == ["", "", sweep.LOST, "", "", ""]
+    assert [row["why"] for row in rows(tmp_path / RUNS)] == ["", "", LOST, "", "", ""]
 
 
 # The command.

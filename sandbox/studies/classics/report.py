@@ -50,17 +50,18 @@ def as_markdown(
         for _, check, verdict, p in mine:
             sure = "" if isinstance(check.estimate, Exact) else f", p {p:.2g}"
             lines.append(
-                f"| {_cell(check.quantity)}: {_value(check)}{_seeds(check)} | {_cell(check.expected)} | {_must(check)} | "
+                f"| {cell(check.quantity)}: {value(check)}{_seeds(check)} | {cell(check.expected)} | {must(check)} | "
                 f"**{verdict}**{sure} |"
             )
-        reasons = dict.fromkeys(f"- {_must(check)}: {check.reason}." for _, check, _, _ in mine)
+        reasons = dict.fromkeys(f"- {must(check)}: {check.reason}." for _, check, _, _ in mine)
         lines += ["", *reasons]
     if failures:
         lines += ["", "## Runs that failed", "", *(f"- {failure}" for failure in failures)]
     return "\n".join([*lines, ""])
 
 
-def _value(check: Check) -> str:
+def value(check: Check) -> str:
+    """What was measured, with its interval."""
     if isinstance(check.estimate, Exact):
         return f"{check.estimate.value:.6g}"
     low, high = check.estimate.interval()
@@ -71,14 +72,16 @@ def _seeds(check: Check) -> str:
     return f", {len(check.seeds)} seeds" if check.seeds else ""
 
 
-def _must(check: Check) -> str:
+def must(check: Check) -> str:
+    """What is demanded of it."""
     low, high = check.demand.low, check.demand.high
     if low > float("-inf") and high < float("inf"):
         return f"{low:.6g} to {high:.6g}"
     return f"above {low:.4g}" if low > float("-inf") else f"below {high:.4g}"
 
 
-def _cell(text: str) -> str:
+def cell(text: str) -> str:
+    """Text that fits a table."""
     return " ".join(text.split()).replace("|", "\\|")
 
 

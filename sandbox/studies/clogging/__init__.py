@@ -1,0 +1,1 @@
+"""Clogging as an experiment."""
