@@ -41,7 +41,13 @@ def drain(job: Job) -> Found:
         "arch": "",
         "increments": 5,
     }
-    told: dict[str, Any] = {**row, **settings, **dict.fromkeys(outcome.AFTER, 0), "why": "", "arch": ""}
+    told: dict[str, Any] = {
+        **row,
+        **settings,
+        **dict.fromkeys(outcome.AFTER, 0),
+        "why": "",
+        "arch": "",
+    }
     told |= {"outcome": ended, "out": min(size, 200)}
     return Found(told, (fall,) if size else ())
 
