@@ -57,6 +57,7 @@ def test_the_keys_are_those_of_the_help_page() -> None:
 
 PAGES = (
     "README.md",
+    "CONTRIBUTING.md",
     "sandbox/README.md",
     "scenes/README.md",
     "sandbox/notebook/README.md",
