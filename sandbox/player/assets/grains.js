@@ -137,14 +137,9 @@ class Scenery {
     }
     const made = look.view.made;
     for (const [fill, rim, some] of groups.values()) {
-      const path = new Path2D();
-      for (const place of some) this.ellipse(path, place, -0.5 * this.line);
-      g.fillStyle = css(fill);
-      g.fill(path);
+      this.discs(some, 0, rim); // two fillings are quicker than a filling and an outline
+      this.discs(some, made ? -0.5 * this.line : -this.line, fill);
       if (made) this.holes(some, fill);
-      g.strokeStyle = css(rim);
-      g.lineWidth = made ? 0.5 * this.line : this.line;
-      g.stroke(path);
       if (pane.rubs) this.radii(made ? some.filter(([k]) => !(pane.nu[k] < 0)) : some, rim, made);
     }
     const pointed = places.filter(([k]) => pane.pointed[k]);
@@ -156,6 +151,15 @@ class Scenery {
       g.stroke(path);
     }
     if (!made) this.signs(places);
+  }
+
+  discs(some, grow, colour) {
+    this.g.fillStyle = css(colour);
+    for (const place of some) {
+      this.g.beginPath(); // an ellipse alone is drawn quickly, many in one path are not
+      this.ellipse(this.g, place, grow);
+      this.g.fill();
+    }
   }
 
   // Fill and rim of a grain.
@@ -179,7 +183,7 @@ class Scenery {
     const a = Math.max(camera.k * (pane.p[k] + q) + grow, 0.1);
     const b = Math.max(camera.k * (pane.p[k] - q) + grow, 0.1);
     const angle = -0.5 * Math.atan2(pane.q2[k], pane.q1[k]);
-    path.moveTo(x + a * Math.cos(angle), y + a * Math.sin(angle));
+    if (path instanceof Path2D) path.moveTo(x + a * Math.cos(angle), y + a * Math.sin(angle));
     path.ellipse(x, y, a, b, angle, 0, TURN);
   }
 
@@ -204,17 +208,17 @@ class Scenery {
   // The re-entrant sign of auxetic grains: a bow-tie that closes as they shrink.
   signs(places) {
     const { g, pane, camera } = this;
-    const path = new Path2D();
+    g.fillStyle = css(this.theme.ground);
     for (const [k, x, y] of places) {
       const smallest = camera.k * (pane.p[k] - Math.hypot(pane.q1[k], pane.q2[k]));
       if (!(pane.nu[k] < 0) || smallest < 1.5) continue;
       const [opened, slit] = [this.openness(k), 0.55 / smallest];
       const [waist, end, h] = [Math.max(0.1 * opened, slit), Math.max(0.46 * opened, slit), 0.52];
       const at = this.frame(k, x, y, pane.spin[k]);
-      polygon(path, [[end, h], [waist, 0], [end, -h], [-end, -h], [-waist, 0], [-end, h]].map(([u, v]) => at(u, v)));
+      g.beginPath();
+      polygon(g, [[end, h], [waist, 0], [end, -h], [-end, -h], [-waist, 0], [-end, h]].map(([u, v]) => at(u, v)));
+      g.fill();
     }
-    g.fillStyle = css(this.theme.ground);
-    g.fill(path);
   }
 
   // Grains as they are made: rings, and discs with a re-entrant hole, a wedge from the rim, and a tooth that bars it.
@@ -296,28 +300,29 @@ class Scenery {
     let mean = 0;
     for (const pair of active) mean += forces[pair] / active.length;
     const BINS = 24;
-    const bins = Array.from({ length: BINS }, () => null);
-    for (const pair of active) {
-      const bin = Math.min(Math.floor(Math.sqrt(forces[pair] / run.tops.chains) * BINS), BINS - 1);
-      const path = (bins[bin] ??= new Path2D());
-      for (const [x0, y0, x1, y1] of this.contact(pair, base)) {
-        path.moveTo(this.px(x0), this.py(y0));
-        path.lineTo(this.px(x1), this.py(y1));
-      }
-    }
+    const bins = Array.from({ length: BINS }, () => []);
+    for (const pair of active) bins[Math.min(Math.floor(Math.sqrt(forces[pair] / run.tops.chains) * BINS), BINS - 1)].push(pair);
     const plain = look.view.valued; // there the colour says something else
     const widest = Math.min(0.62 * camera.k, 13 * look.scale) * (plain ? 0.6 : 1);
     const clip = (value) => Math.min(Math.max(value, 0), 1);
     g.lineCap = "round";
     for (const rimmed of plain ? [true, false] : [false]) {
-      bins.forEach((path, bin) => {
-        if (!path) return;
+      bins.forEach((pairs, bin) => {
         const share = ((bin + 0.5) / BINS) ** 2;
         const force = share * run.tops.chains;
-        g.globalAlpha = Math.min(clip((force / mean - 0.3) / 0.7), clip((share - 0.004) / 0.056));
+        const alpha = Math.min(clip((force / mean - 0.3) / 0.7), clip((share - 0.004) / 0.056));
+        if (!pairs.length || alpha < 0.02) return;
+        g.globalAlpha = alpha;
         g.lineWidth = widest * Math.sqrt(share) + (rimmed ? 2 * look.scale : 0);
         g.strokeStyle = css(rimmed ? theme.ground : plain ? theme.text : rampColour(theme.ramps.chains, share));
-        g.stroke(path);
+        for (const pair of pairs) {
+          for (const [x0, y0, x1, y1] of this.contact(pair, base)) {
+            g.beginPath(); // alone, as ellipses are
+            g.moveTo(this.px(x0), this.py(y0));
+            g.lineTo(this.px(x1), this.py(y1));
+            g.stroke();
+          }
+        }
       });
     }
     g.globalAlpha = 1;

@@ -30,14 +30,30 @@ class Plot {
     return { low, high: high > low ? high : low + 1, bottom, top };
   }
 
+  // All that does not move is drawn once.
   draw(moment, look) {
     const { canvas } = this;
-    const g = (this.g = canvas.getContext("2d"));
+    const key = [canvas.width, canvas.height, look.theme, look.scale, language].join();
+    if (key !== this.key) {
+      this.key = key;
+      this.still = new OffscreenCanvas(canvas.width, canvas.height);
+      this.g = this.still.getContext("2d");
+      this.ground(look);
+    }
+    this.g = canvas.getContext("2d");
+    this.g.drawImage(this.still, 0, 0);
+    if (!this.box) return;
+    const theme = run.themes[look.theme];
+    for (const pane of [...run.panes].reverse()) this.curve(pane, moment, theme, look.scale, true);
+    for (const pane of [...run.panes].reverse()) this.present(pane, moment, theme, look.scale);
+  }
+
+  ground(look) {
+    const { canvas, g } = this;
     const theme = run.themes[look.theme];
     const s = look.scale;
     const letters = 13 * s;
     const axes = (this.known ??= this.axes());
-    g.setTransform(1, 0, 0, 1, 0, 0);
     g.fillStyle = css(theme.panel);
     g.fillRect(0, 0, canvas.width, canvas.height);
     g.font = `${letters}px ${FONT}`;
@@ -47,15 +63,15 @@ class Plot {
     const [left, top, right, bottom] = [gutter, 2.2 * letters, canvas.width - 14 * s, canvas.height - 1.9 * letters];
     this.x = (stroke) => left + ((stroke - axes.low) / (axes.high - axes.low)) * (right - left);
     this.y = (force) => bottom - ((force - axes.bottom) / (axes.top - axes.bottom)) * (bottom - top);
-    if (right - left < 20 || bottom - top < 10) return;
-    this.headline(moment, theme, s, left, right, letters);
+    this.box = right - left < 20 || bottom - top < 10 ? null : [left, right, top, bottom];
+    if (!this.box) return;
+    this.headline(theme, s, left, right, letters);
     this.grid(marks, digits, axes, theme, s, [left, right, bottom, letters]);
     if (run.limit !== null && run.limit <= axes.top) this.limit(theme, s, left, right, letters);
-    for (const pane of [...run.panes].reverse()) this.curve(pane, moment, theme, s, [left, right, top, bottom]);
-    for (const pane of [...run.panes].reverse()) this.present(pane, moment, theme, s, [top, bottom]);
+    for (const pane of [...run.panes].reverse()) this.curve(pane, pane.moments - 1, theme, s, false);
   }
 
-  headline(moment, theme, s, left, right, letters) {
+  headline(theme, s, left, right, letters) {
     const { g } = this;
     g.textBaseline = "middle";
     g.textAlign = "left";
@@ -121,32 +137,34 @@ class Plot {
     g.fillText(text, left + 6 * s, y < 3.4 * letters ? y + 0.8 * letters : y - 0.8 * letters);
   }
 
-  curve(pane, moment, theme, s, [left, right, top, bottom]) {
+  // A curve up to a moment, or all of it faintly.
+  curve(pane, moment, theme, s, strong) {
     const { g } = this;
-    const now = Math.min(pane.at[moment], pane.stroke.length - 1);
-    const path = (from, to) => {
-      g.beginPath();
-      for (let k = from; k <= to; k++) g.lineTo(this.x(pane.stroke[k]), this.y(pane.force[k]));
-      g.stroke();
-    };
+    const [left, right, top, bottom] = this.box;
     g.save();
     g.beginPath();
     g.rect(left - 6 * s, top - 6 * s, right - left + 12 * s, bottom - top + 12 * s);
     g.clip();
     g.lineJoin = "round";
     g.setLineDash(pane.look.dash.map((length) => length * s));
-    g.strokeStyle = css(mix(pane.look.colour, theme.panel, 0.5));
-    g.lineWidth = 1.3 * s;
-    path(now, pane.stroke.length - 1);
-    g.strokeStyle = css(pane.look.colour);
-    g.lineWidth = 2.2 * s;
-    path(0, now);
+    g.strokeStyle = css(strong ? pane.look.colour : mix(pane.look.colour, theme.panel, 0.5));
+    g.lineWidth = (strong ? 2.2 : 1.3) * s;
+    g.beginPath();
+    let [x, y] = [NaN, NaN];
+    for (let k = 0; k <= Math.min(pane.at[moment], pane.stroke.length - 1); k++) {
+      const [nx, ny] = [this.x(pane.stroke[k]), this.y(pane.force[k])];
+      if (Math.abs(nx - x) + Math.abs(ny - y) < 0.7) continue; // nobody could see it
+      [x, y] = [nx, ny];
+      g.lineTo(x, y);
+    }
+    g.stroke();
     g.restore();
   }
 
   // A cursor and a dot at the present moment, and the marks of events.
-  present(pane, moment, theme, s, [top, bottom]) {
+  present(pane, moment, theme, s) {
     const { g } = this;
+    const [, , top, bottom] = this.box;
     const now = Math.min(pane.at[moment], pane.stroke.length - 1);
     const [x, y] = [this.x(pane.stroke[now]), this.y(pane.force[now])];
     g.strokeStyle = css(mix(theme.text, theme.panel, 0.45));
