@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import base64
-import hashlib
 import html
-import json
-from collections.abc import Iterable
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -26,17 +22,20 @@ from sandbox.draw.theme import (
     THEMES,
     Theme,
     magnitude_colours,
-    mix,
     packing_colour,
     packing_dash,
 )
+from sandbox.player.pieces import as_json, asset, colours, filled, marked, policy
 from sandbox.player.recording import recording
 from sandbox.player.story import PLAYER, story
 from sandbox.player.tape import Tape
 from sandbox.words import language, words
 from sandbox.words.language import available, in_each, speaking
 
-SCRIPTS = ("unpack.js", "speak.js", "grains.js", "plot.js", "inspect.js", "player.js")
+SCRIPTS = (
+    *("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "plot.js"),
+    *("panes.js", "inspect.js", "labels.js", "player.js"),
+)
 SHADES = 64  # of a colour map
 # Words of the window that the page says too.
 SHARED = (
@@ -54,6 +53,7 @@ class Look:
     view: str = "kind"
     language: str = ""  # the present one, if none is named
     play: bool = True  # by itself, where the computer does not ask for little motion
+    auto: bool = False  # theme and language as this computer and the page's address ask for them
     above: str = ""  # markup before the player, and after it
     below: str = ""
     style: str = ""  # for that markup
@@ -73,10 +73,10 @@ def page(tape: Tape, look: Look | None = None) -> str:
         "title": in_each(lambda: words.title(first.scene, first.title)),
         "question": in_each(lambda: words.question(first.scene)),
     }
-    begins = {"view": look.view, "play": look.play}
+    begins = {"view": look.view, "play": look.play, "auto": look.auto}
     script = (
-        f'"use strict";\nconst PAGE = {_json(_about() | titles | {"start": begins})};\n'
-        + "\n".join(_asset(name) for name in SCRIPTS)
+        f'"use strict";\nconst PAGE = {as_json(_about() | titles | {"start": begins})};\n'
+        + "\n".join(asset(name) for name in SCRIPTS)
     )
     code = look.language or language.present()
     with speaking(code):
@@ -88,55 +88,19 @@ def page(tape: Tape, look: Look | None = None) -> str:
             "version": __version__,
             "title": html.escape(titles["title"][at]),
             "question": html.escape(titles["question"][at]),
-            "style": "\n".join(
-                [*map(_variables, THEMES.values()), _asset("player.css"), look.style]
-            ),
-            "story": _stories(tape, code),
+            "style": "\n".join([colours(), asset("player.css"), look.style]),
+            "story": marked(lambda: _paragraphs(tape), code),
             "noscript": html.escape(PLAYER["noscript"]),
             "above": look.above,
             "below": look.below,
             "script": script,
             "recording": recorded,
         }
-    return filled(_asset("player.html"), values)
+    return filled(asset("player.html"), values)
 
 
-def filled(template: str, values: dict[str, str]) -> str:
-    """A template with its ``{{names}}`` replaced, each piece once and what is put in left alone."""
-    parts = []
-    for part in template.split("{{"):
-        name, end, rest = part.partition("}}")
-        parts.append(values[name] + rest if end and name in values else part)
-    return "".join(parts)
-
-
-def policy(script: str) -> str:
-    """What the page may do: run its own script, and nothing from outside."""
-    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
-    return (
-        f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; "
-        "img-src data:; base-uri 'none'; form-action 'none'"
-    )
-
-
-def _asset(name: str) -> str:
-    return (files("sandbox.player") / "assets" / name).read_text(encoding="utf-8")
-
-
-def _json(value: Any) -> str:
-    """JSON that cannot end the script it stands in."""
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
-
-
-def _stories(tape: Tape, shown: str) -> str:
-    """What happened, in every language; one of them is shown."""
-    told = []
-    for code in available():
-        with speaking(code):
-            paragraphs = "".join(f"<p>{html.escape(text)}</p>" for text in story(tape))
-        hidden = "" if code == shown else " hidden"
-        told.append(f'<div data-story lang="{code}"{hidden}>{paragraphs}</div>')
-    return "".join(told)
+def _paragraphs(tape: Tape) -> str:
+    return "".join(f"<p>{html.escape(text)}</p>" for text in story(tape))
 
 
 def _about() -> dict[str, Any]:
@@ -196,23 +160,3 @@ def _theme(theme: Theme) -> dict[str, Any]:
         "dark": theme.name == "dark",
         "ramps": {name: colours.tolist() for name, colours in ramps.items()},
     }
-
-
-def _variables(theme: Theme) -> str:
-    """The colours of a theme for the style."""
-    dark = theme.name == "dark"
-    colours = {
-        **{name: getattr(theme, name) for name in ("ground", "panel", "hairline", "text")},
-        **{name: getattr(theme, name) for name in ("good", "working", "bad")},
-        "soft": theme.soft_text,
-        "hand": HAND,
-        "edge": mix(theme.panel, theme.text, 0.45),
-        "pressed": mix(theme.panel, theme.text, 0.16),
-        "event": EVENT if dark else mix(EVENT, 0x000000, 0.35),
-        "focus": 0xFFD34D if dark else 0x0B57D0,
-    }
-    return f'html[data-theme="{theme.name}"] {{ {_declared(colours.items())} }}'
-
-
-def _declared(colours: Iterable[tuple[str, int]]) -> str:
-    return " ".join(f"--{name}: #{colour:06x};" for name, colour in colours)

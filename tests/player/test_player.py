@@ -18,7 +18,8 @@ from sandbox.cli import main as cli
 from sandbox.player import coding
 from sandbox.player.coding import Writer, read, unpacked
 from sandbox.player.kept import QUANTITIES
-from sandbox.player.page import SCRIPTS, Look, _asset, page
+from sandbox.player.page import SCRIPTS, Look, page
+from sandbox.player.pieces import asset
 from sandbox.player.tape import Tape
 from sandbox.record.record import in_step
 from sandbox.session.commands import Protocol
@@ -188,7 +189,7 @@ def test_nothing_is_asked_for(text: str) -> None:
 def test_every_word_of_the_page_is_there_in_every_language(text: str) -> None:
     asked = set()
     for name in SCRIPTS:
-        asked |= set(re.findall(r'\bword\("([a-z_]+)"[,)]', _asset(name)))
+        asked |= set(re.findall(r'\bword\("([a-z_]+)"[,)]', asset(name)))
     asked |= {f"event_{kind}" for kind in ("locked", "clog", "arch", "avalanche")}
     found = re.search(r"const PAGE = (\{.+\});", text)
     assert found
@@ -197,7 +198,7 @@ def test_every_word_of_the_page_is_there_in_every_language(text: str) -> None:
     for table in tables:
         assert asked <= set(table)
     assert asked - set(tables[0]) == set()
-    stories = [a for _, a in Markup(text).found if "data-story" in a]
+    stories = [a for _, a in Markup(text).found if "data-said" in a]
     assert [(a["lang"], "hidden" in a) for a in stories] == [("en", True), ("de", False)]
     assert "Locked" not in text
     assert "Schritt 2: Verkeilt" in text or "Schritt 2: " in text
@@ -212,7 +213,7 @@ def test_who_hears_the_page_finds_the_way(text: str) -> None:
     assert len(ids) == len(set(ids))
     assert markup.all("html")[0]["lang"] == "de"
     assert len(markup.all("h1")) == len(markup.all("main")) == len(markup.all("title")) == 1
-    named = set(re.findall(r'\$\("([a-z-]+)"\)', "".join(map(_asset, SCRIPTS))))
+    named = set(re.findall(r'\$\("([a-z-]+)"\)', "".join(map(asset, SCRIPTS))))
     assert named <= set(ids)
     for attribute in ("for", "aria-labelledby", "aria-describedby", "aria-controls"):
         assert {a[attribute] for _, a in markup.found if attribute in a} <= set(ids)

@@ -56,3 +56,65 @@ function nearestGrain(pane, moment, x, y, seen = []) {
   }
   return found;
 }
+
+function lookAt(pane, grain) {
+  state.pane = pane;
+  state.grain = grain;
+  state.seen = grain < 0 ? [] : [...state.seen.filter((seen) => seen !== grain), grain];
+  draw();
+  if (grain >= 0) announce(grainText());
+}
+
+function followContact() {
+  const pane = run.panes[state.pane];
+  if (state.grain < 0) {
+    const [x0, y0, x1, y1] = pane.bounds;
+    const handle = pane.handles[0]?.at.subarray(4 * state.moment, 4 * state.moment + 2) ?? [(x0 + x1) / 2, (y0 + y1) / 2];
+    lookAt(state.pane, nearestGrain(pane, state.moment, ...handle));
+  } else lookAt(state.pane, nextGrain(pane, state.moment, state.grain, state.seen));
+}
+
+function grainName(pane, grain) {
+  const kind = pane.nu[state.moment * pane.count + grain] < 0 ? "auxetic" : "regular";
+  return `${word("grain_label", { label: pane.labels[grain] })}, ${word("kind_" + kind)}`;
+}
+
+function grainText() {
+  const pane = run.panes[state.pane];
+  const { facts } = factsOf(pane, state.moment, state.grain);
+  return [grainName(pane, state.grain), ...facts.map(([name, value]) => `${name} ${value}`)].join(". ");
+}
+
+function tellGrain() {
+  const card = $("grain");
+  const pane = run.panes[state.pane];
+  const gone = state.grain < 0 || !pane.there[state.moment * pane.count + state.grain];
+  if (gone) {
+    if (!card.hidden) card.hidden = true;
+    return;
+  }
+  card.hidden = false;
+  const { facts, contacts, forces } = factsOf(pane, state.moment, state.grain);
+  const focused = card.contains(document.activeElement) ? document.activeElement.dataset.key : null;
+  const close = element("button", { type: "button", className: "small", textContent: word("let_go"), onclick: () => lookAt(state.pane, -1) });
+  const along = element("button", { type: "button", className: "small", textContent: word("next_contact"), onclick: followContact });
+  close.dataset.key = "close";
+  along.dataset.key = "along";
+  const list = element("dl", { className: "facts" });
+  for (const [name, value] of facts) list.append(element("dt", { textContent: name }), element("dd", { textContent: value }));
+  const touching = element("ul", { className: "touching" });
+  for (const [other, force] of contacts) {
+    const size = `${number(force, forces)} k R`;
+    if (other < 0) touching.append(element("li", { textContent: `${word("grain_wall")}: ${size}` }));
+    else {
+      const text = word("grain_other", { label: pane.labels[other], force: size });
+      const button = element("button", { type: "button", className: "small", textContent: text, onclick: () => lookAt(state.pane, other) });
+      button.dataset.key = `grain ${other}`;
+      touching.append(element("li", {}, button));
+    }
+  }
+  const heading = [element("h2", { textContent: grainName(pane, state.grain) })];
+  if (run.panes.length > 1) heading.push(element("p", { className: "soft", textContent: `${word("panel_packing")}: ${say(pane.title)}` }));
+  card.replaceChildren(...heading, list, touching, element("p", { className: "row" }, along, close));
+  if (focused) (card.querySelector(`[data-key="${focused}"]`) ?? close).focus();
+}

@@ -1,0 +1,106 @@
+// What stands on the page in the present language: names, events, legend.
+
+function speakAll() {
+  settle(run.languages[language], state.theme);
+  document.title = say(run.title);
+  const texts = { title: say(run.title), question: say(run.question), "view-label": word("view"), "speed-label": word("speed") };
+  Object.assign(texts, { "story-title": word("story"), "events-title": word("events"), "keys-title": word("keys") });
+  Object.assign(texts, { "letters-label": word("letters"), chains: word("chains") });
+  for (const [id, text] of Object.entries(texts)) setText($(id), text);
+  const other = (language + 1) % run.languages.length;
+  setText($("language"), run.words[other].name);
+  $("language").lang = run.languages[other];
+  $("choices").setAttribute("aria-label", word("choices"));
+  $("stage").setAttribute("aria-label", word("stage"));
+  $("plot-part").setAttribute("aria-label", word("plot"));
+  $("time-part").setAttribute("aria-label", word("time"));
+  $("time").setAttribute("aria-label", word("time"));
+  $("plot").setAttribute("aria-label", word("plot_picture", { force: say(run.labels.force), stroke: say(run.labels.stroke) }));
+  for (const [id, key] of [["back", "back"], ["on", "on"]]) {
+    $(id).replaceChildren(icon(ICONS[id]));
+    $(id).setAttribute("aria-label", word(key));
+    $(id).title = word(key);
+  }
+  $("view").replaceChildren(...run.views.map((each, k) => element("option", { value: k, textContent: say(each.title), selected: k === state.view })));
+  $("speed").setAttribute("aria-label", word("speed"));
+  const names = ["1/8", "1/4", "1/2", "1", "2", "4"];
+  $("speed").replaceChildren(...names.map((name, k) => element("option", { value: k, textContent: `${name} ×`, selected: k === state.speed })));
+  makeEvents();
+  $("keys").replaceChildren(...run.keys[language].flatMap(([key, does]) => [element("dt", { textContent: key }), element("dd", { textContent: does })]));
+  showPlay();
+  showTheme();
+  makeLegend();
+  draw();
+  announce();
+}
+
+function makeEvents() {
+  const all = eventsInOrder();
+  $("events-part").hidden = !all.length;
+  $("marks").replaceChildren();
+  $("events").replaceChildren();
+  for (const event of all) {
+    const whose = run.panes.length > 1 ? `${say(run.panes[event.pane].title)} · ` : "";
+    const text = `${whose}${word("increment", { increment: event.increment })}: ${say(event.text)}`;
+    const choose = () => seek(event.moment);
+    const mark = element("button", { type: "button", className: "mark", tabIndex: -1, title: text, onclick: choose }, shapeOfEvent(event.kind));
+    mark.setAttribute("aria-hidden", "true"); // the list says the same, and is on the way of Tab
+    mark.style.left = `${(100 * event.moment) / Math.max(last(), 1)}%`;
+    $("marks").append(mark);
+    $("events").append(element("li", {}, element("button", { type: "button", onclick: choose }, shapeOfEvent(event.kind), element("span", { textContent: text }))));
+  }
+}
+
+function shapeOfEvent(kind) {
+  const points = (run.shapes[kind] ?? run.shapes.clog).map(([u, v]) => `${12 + 8 * u} ${12 - 8 * v}`);
+  return icon(`M${points.join("L")}z`, "event");
+}
+
+function makeLegend() {
+  const parts = [];
+  const theme = run.themes[state.theme];
+  const count = [0, 0];
+  for (const pane of run.panes) for (let k = 0; k < pane.count; k++) count[pane.nu[k] < 0 ? 1 : 0]++;
+  ["regular", "auxetic"].forEach((kind, k) => {
+    if (count[k]) parts.push(element("span", { className: "part" }, kindPicture(kind), word("kinds_" + kind)));
+  });
+  const bar = (name, top, unit, ramp, wedge) => {
+    const picture = element("span", { className: wedge ? "ramp wedge" : "ramp" });
+    picture.style.backgroundImage = `linear-gradient(to right, ${ramp.map(css).join(",")})`;
+    const high = `${number(top, decimalsFor(top / 10))} ${unit}`.trim();
+    parts.push(element("span", { className: "part" }, `${name}  0`, picture, high));
+  };
+  if (state.chains || view().onlyChains) {
+    bar(word("chains"), run.tops.chains, "k R", view().valued ? [theme.text, theme.text] : theme.ramps.chains, true);
+  }
+  if (view().valued) bar(say(view().title), view().top, view().unit, theme.ramps[view().ramp], false);
+  $("legend").replaceChildren(...parts);
+}
+
+// A grain as on the canvas.
+function kindPicture(kind) {
+  const ratio = devicePixelRatio || 1;
+  const canvas = element("canvas", { width: 24 * ratio, height: 24 * ratio, className: "kind" });
+  canvas.setAttribute("aria-hidden", "true");
+  const one = (value) => Float32Array.of(value);
+  const pane = { count: 1, labels: [0], x: one(0), y: one(0), p: one(1), q1: one(0), q2: one(0), rest: one(1), spin: one(0), there: one(1), pointed: one(0), squeezed: one(0) };
+  Object.assign(pane, { nu: one(kind === "auxetic" ? -1 : 1), bodies: [], handles: [], box: null, rubs: false, active: [[]] });
+  const shown = view().made ? run.views.find((each) => each.made) : run.views.find((each) => each.name === "kind");
+  const camera = { k: 11 * ratio, x: 12 * ratio, y: 12 * ratio };
+  const scenery = new Scenery(canvas.getContext("2d"), pane, 0, camera, { theme: state.theme, view: shown, chains: false, scale: ratio });
+  scenery.line = 1.5 * ratio;
+  scenery.grains();
+  return canvas;
+}
+
+function showTheme() {
+  settle(run.languages[language], state.theme);
+  setText($("theme"), word(state.theme === "dark" ? "to_light" : "to_dark"));
+  $("chains").setAttribute("aria-pressed", String(state.chains));
+  for (const pane of run.panes) {
+    const { colour, dash } = pane.look;
+    pane.nodes.swatch.style.background = dash.length
+      ? `repeating-linear-gradient(to right, ${css(colour)} 0 ${dash[0]}px, transparent ${dash[0]}px ${dash[0] + dash[1]}px)`
+      : css(colour);
+  }
+}
