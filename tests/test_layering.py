@@ -92,12 +92,13 @@ def circle_through(start: str) -> list[str]:
 STUDY = "studies.common session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "studies.clogging studies.common record player files session words scenes core",
+    "studies.clogging studies.common site record player files session words scenes core",
     "window": "window.solvers record player files draw lessons session words scenes core",
     "sweep": "studies.common record draw session scenes core",
     "window.solvers": "files session words scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
+    "site": "record player session words scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,
     "studies.stability": STUDY,

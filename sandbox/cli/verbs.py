@@ -177,6 +177,34 @@ def study(options: argparse.Namespace) -> int:
         return INTERRUPTED
 
 
+def site(options: argparse.Namespace) -> int:
+    """Write the gallery."""
+    from sandbox.site import site as gallery
+    from sandbox.site import studies as results
+    from scenes import registry
+
+    scenes = [registry.get(name).name for name in options.scene or registry.names()]
+    results.require_markdown()
+    folder = gallery.prepared(options.out)
+    from sandbox.interrupts import stop_like_ctrl_c
+
+    try:
+        with stop_like_ctrl_c():
+            written = gallery.site(folder, list(dict.fromkeys(scenes)), options.steps)
+    except KeyboardInterrupt:
+        print(f"stopped; the pages in {folder} that are there are whole", file=sys.stderr)
+        return INTERRUPTED
+    size = sum(path.stat().st_size for path in written)
+    print(f"{len(written)} pages, {size / 1e6:.1f} MB: {folder / 'index.html'}")
+    if not results.found():
+        print("without what was measured: this installation has no assets/studies")
+    if size > gallery.MOST:
+        print(
+            f"larger than {gallery.MOST / 1e6:g} MB: use --scene or --steps for a smaller gallery"
+        )
+    return OK
+
+
 def _output(
     options: argparse.Namespace, size: tuple[int, int], fps: float, every: int = 1
 ) -> Output | None:

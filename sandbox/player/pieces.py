@@ -74,6 +74,7 @@ def _variables(theme: Theme) -> str:
         "edge": mix(theme.panel, theme.text, 0.45),
         "pressed": mix(theme.panel, theme.text, 0.16),
         "event": EVENT if dark else mix(EVENT, 0x000000, 0.35),
+        "link": 0x6CC4F5 if dark else 0x00548A,
         "focus": 0xFFD34D if dark else 0x0B57D0,
     }
     declared = " ".join(f"--{name}: #{colour:06x};" for name, colour in colours.items())

@@ -25,13 +25,18 @@ def story(tape: Tape) -> list[str]:
     head = PLAYER["story_one" if len(frames) == 1 else "story_several"].format(
         title=words.title(first.scene, first.title),
         packings=listed([name_of(frame) for frame in frames]),
-        grains=tape.moments[0][0].size,
+        grains=_count([kept.size for kept in tape.moments[0]]),
         seed=first.seed,
         increments=tape.increments,
     )
     if len(tape.moments) <= tape.increments:
         head += " " + PLAYER["story_thinned"].format(count=len(tape.moments))
     return [head, *(_of(frame) for frame in frames)]
+
+
+def _count(sizes: Sequence[int]) -> str:
+    """``160``, or ``1–2`` where packings differ."""
+    return "–".join(map(str, sorted({min(sizes), max(sizes)})))
 
 
 def name_of(frame: Frame) -> str:

@@ -30,7 +30,7 @@ function speakAll() {
   showPlay();
   showTheme();
   makeLegend();
-  draw();
+  arrange();
   announce();
 }
 

@@ -36,16 +36,17 @@ function arrange() {
   const stage = $("stage");
   const free = getComputedStyle(stage).flexGrow === "0";
   const [wide, high] = [stage.clientWidth, free ? Math.max(innerHeight * 0.62, 240) : stage.clientHeight];
-  const extra = 94; // strip and foot
   let [best, columns, cell] = [0, 1, 100];
   for (let count = 1; count <= run.panes.length; count++) {
     const rows = Math.ceil(run.panes.length / count);
-    const [w, h] = [wide / count - 20, high / rows - extra - 20];
+    const strips = 68 + 21 * linesOf(wide / count); // above and below the grains
+    const [w, h] = [wide / count - 20, high / rows - strips - 20];
     const k = Math.min(...run.panes.map(({ bounds: [x0, y0, x1, y1] }) => Math.min(w / (x1 - x0), h / (y1 - y0))));
     if (k > best * 1.02) [best, columns] = [k, count];
   }
   for (const { bounds } of run.panes) cell = Math.max(cell, best * (bounds[3] - bounds[1]) + 20);
   stage.style.setProperty("--columns", columns);
+  stage.style.setProperty("--lines", linesOf(wide / columns));
   stage.style.setProperty("--cell", free ? `${Math.round(cell)}px` : "auto");
   const ratio = devicePixelRatio || 1;
   for (const canvas of [...run.panes.map((pane) => pane.canvas), $("plot")]) {
@@ -57,6 +58,14 @@ function arrange() {
   const scale = Math.min(...fitted.map((camera) => camera.k)); // one scale for all
   for (const pane of run.panes) pane.camera = cameraFor(pane.bounds, pane.canvas.width, pane.canvas.height, 0, scale);
   draw();
+}
+
+// Lines that the longest notice takes below a packing so wide: the room is kept, so that nothing jumps.
+function linesOf(width) {
+  const texts = run.panes.flatMap((pane) => pane.events.map((event) => say(event.text)));
+  for (const pane of run.panes) for (const some of pane.notices) texts.push(some.map((text) => say(run.texts[text])).join(" · "));
+  const longest = Math.max(0, ...texts.map((text) => text.length));
+  return Math.min(Math.ceil((longest * 8) / (width - 20)), 4);
 }
 
 function draw() {

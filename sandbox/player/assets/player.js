@@ -192,7 +192,6 @@ async function begin() {
   for (const pane of run.panes) pane.camera = cameraFor(pane.bounds, 1, 1, 0);
   speakAll();
   new ResizeObserver(arrange).observe($("stage"));
-  arrange();
   document.documentElement.dataset.ready = Math.round(performance.now());
   if (!still.matches && run.start.play) play(true);
 }
