@@ -34,7 +34,7 @@ from scenes.scene import (
     solver,
     step,
 )
-from scenes.text import Text
+from scenes.text import Text, counted
 
 LEAST_DROP = 0.005  # of the pressure at the start: smaller falls of the stress are no avalanche
 ANNOUNCED = 0.02  # of the pressure at the start: smaller ones are told, and not announced
@@ -138,7 +138,7 @@ class Avalanches(Scene):
         weight = taking_part(setup.packing, latest.before, latest.now)
         share = participation(weight)
         text = Text(
-            "avalanche: the shear stress fell by {fall:.2g} k, as if {count:.0f} of {total} grains took part",
+            "avalanche: the shear stress fell by {fall:.2g} k, as if {count:.0f} of {total} {total:grain|grains} took part",
             fall=float(fall),
             count=share * len(weight),
             total=len(weight),
@@ -181,7 +181,8 @@ def _falls_are_sudden(track: Track) -> Check:
         return Check(name, None, "for a drive that goes one way")
     places, drops = stress_drops(track.force, 0.0)
     if len(track.force) < 100 or len(places) < 5:
-        return Check(name, None, f"{len(places)} falls in {len(track.force)} increments: too few")
+        falls, increments = counted(len(places), "fall"), counted(len(track.force), "increment")
+        return Check(name, None, f"{falls} in {increments}: too few")
     rise = float(np.diff(track.force).max())
     return Check(
         name,

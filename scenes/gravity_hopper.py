@@ -40,7 +40,7 @@ from scenes.scene import (
     hand,
     solver,
 )
-from scenes.text import Text
+from scenes.text import Text, counted
 
 DROP = 5.0  # a grain this far below the lips has left [R]
 ROOM = 3.0  # between the grains and the brim at the start [R]
@@ -199,24 +199,29 @@ class GravityHopper(Scene):
         if not count:
             return Remarks(("empty",))
         if latest.left and latest.waited > PAUSE and count + latest.left < latest.at_start:
-            text = Text("avalanche: it flows again, {count} grains are left", count=count)
+            text = Text(
+                "avalanche: it flows again, {count} {count:grain is|grains are} left", count=count
+            )
             return Remarks((text,), who_took_part(setup.packing, latest), {"avalanche": text})
         if not latest.at_rest:
             return Remarks(("flowing",) if latest.left else ())
         found = self.arch(setup, latest.now)
         if found is None:
-            text = Text("at rest: {count} grains stay on the funnel's sides", count=count)
+            text = Text(
+                "at rest: {count} {count:grain stays|grains stay} on the funnel's sides",
+                count=count,
+            )
             return Remarks((text,))
         arch = int(found.sum())
         if count == latest.at_start:
             text = Text(
-                "never started: an arch of {arch} holds all {count} grains. Shake the funnel",
+                "never started: an arch of {arch} holds all {count} {count:grain|grains}. Shake the funnel",
                 arch=arch,
                 count=count,
             )
             return Remarks((text,), found, {"arch": text})
         text = Text(
-            "clogged: an arch of {arch} holds {count} grains. Shake the funnel",
+            "clogged: an arch of {arch} holds {count} {count:grain|grains}. Shake the funnel",
             arch=arch,
             count=count,
         )
@@ -256,7 +261,7 @@ def _nothing_hangs(setup: Setup, track: Track) -> Check:
         return Check(name, None, "the grains are on their way")
     loose = ~_held(setup.packing, setup.world)
     if not loose.any():
-        return Check(name, True, f"all of {len(loose)} grains touch something")
+        return Check(name, True, f"all of {counted(len(loose), 'grain')} touch something")
     # The shaken funnel lets grains go at any time: those sink, or land, in one more increment.
     friction = None
     if setup.friction is not None:

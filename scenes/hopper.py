@@ -170,14 +170,17 @@ class Hopper(Scene):
         if since < DIAMETER:
             if found is None:
                 return Remarks()
-            text = Text("an arch of {grains} grains holds what is above", grains=int(found.sum()))
+            text = Text(
+                "an arch of {grains} {grains:grain|grains} holds what is above",
+                grains=int(found.sum()),
+            )
             return Remarks((text,), found, {"arch": text})
         text = Text(
             "clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=since / DIAMETER
         )
         if found is not None:
             text = Text(
-                "{clogged}, held by an arch of {grains} grains",
+                "{clogged}, held by an arch of {grains} {grains:grain|grains}",
                 clogged=text,
                 grains=int(found.sum()),
             )
@@ -194,7 +197,9 @@ class Hopper(Scene):
         found = self.arch(setup, latest.now)
         if found is None:
             return super().what_holds(setup, latest)
-        return Holding(Text("an arch of {grains} grains holds", grains=int(found.sum())), found)
+        return Holding(
+            Text("an arch of {grains} {grains:grain|grains} holds", grains=int(found.sum())), found
+        )
 
 
 def _piston(half_width: float, top: float, way: float) -> RigidBody:

@@ -28,7 +28,7 @@ from scenes.accuracy import Accuracy, accuracy_of
 from scenes.bearing import bearing
 from scenes.grains import KINDS_OF_GRAINS, STIFFNESSES, check_material, material, recipe
 from scenes.parameter import Parameter, Value
-from scenes.text import Text
+from scenes.text import Text, counted
 
 Values = Mapping[str, Value]
 
@@ -308,7 +308,9 @@ class Scene(ABC):
         grains = bearing(setup.packing, latest.now, setup.world, setup.handles[0].body)
         if grains is None:
             return Holding("the grains hold")
-        return Holding(Text("{grains} grains hold", grains=int(grains.sum())), grains)
+        return Holding(
+            Text("{grains} {grains:grain holds|grains hold}", grains=int(grains.sum())), grains
+        )
 
     def checks(self, setup: Setup, track: Track) -> list[Check]:
         """Claims that must hold; subclasses add their own to those for any scene."""
@@ -453,7 +455,7 @@ def _converged(track: Track) -> Check:
     return Check(
         "at least nine of ten increments converge",
         share >= 0.9,
-        f"{share:.1%} of {len(track.converged)} increments",
+        f"{share:.1%} of {counted(len(track.converged), 'increment')}",
     )
 
 

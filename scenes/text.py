@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import string
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, Self
+
+Plural = Callable[[int], int]  # which form a word has after a number, counted from 0
 
 
 class Text(str):
     """An English text that remembers what it was made from: a template and its values.
 
     ``Text("{label}: end of travel", label="piston")`` is the plain string "piston: end of travel" for everyone who does not
-    ask further. Minus signs of numbers are true ones.
+    ask further. Minus signs of numbers are true ones. Forms of a word that follow a number are written
+    ``{grains} {grains:grain|grains}``.
     """
 
     template: str
@@ -23,16 +26,34 @@ class Text(str):
         return text
 
 
-def filled(template: str, values: Mapping[str, object], decimal: str = ".") -> str:
-    """The template with its values; ``decimal`` is the sign before the decimals of a number."""
-    return _Filler(decimal).vformat(template, (), values)
+def one_or_many(count: int) -> int:
+    """Which form an English word has: 0 after one, 1 after any other number."""
+    return int(count != 1)
+
+
+def counted(count: int, noun: str) -> str:
+    """So many of something in English: 1 grain, 2 grains."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def filled(
+    template: str,
+    values: Mapping[str, object],
+    decimal: str = ".",
+    plural: Plural = one_or_many,
+) -> str:
+    """The template with its values; ``decimal`` is the sign before the decimals of a number, ``plural`` chooses among forms."""
+    return _Filler(decimal, plural).vformat(template, (), values)
 
 
 class _Filler(string.Formatter):
-    def __init__(self, decimal: str) -> None:
-        self._decimal = decimal
+    def __init__(self, decimal: str, plural: Plural) -> None:
+        self._decimal, self._plural = decimal, plural
 
     def format_field(self, value: Any, format_spec: str) -> str:
+        if "|" in format_spec:
+            forms = format_spec.split("|")
+            return forms[min(self._plural(abs(int(value))), len(forms) - 1)]
         text = format(value, format_spec)
         if isinstance(value, (int, float)):
             text = text.replace("-", "−").replace(".", self._decimal)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from core.errors import InputError
 from sandbox.cli.exit_codes import FAILED, INTERRUPTED, OK
+from scenes.text import counted
 
 Study = Callable[[argparse.Namespace], int]
 
@@ -100,7 +101,7 @@ def hand(options: argparse.Namespace) -> int:
     found = [*wrong(done.rows), *done.failures]
     for line in found:
         print(line)
-    print(f"{len(done.rows)} runs: {len(found) or 'nothing'} not as it should be")
+    print(f"{counted(len(done.rows), 'run')}: {len(found) or 'nothing'} not as it should be")
     print(f"tables and numbers: {folder / 'hand.md'}, runs.csv, results.json")
     return FAILED if found else OK
 
@@ -155,7 +156,10 @@ def clogging(options: argparse.Namespace) -> int:
 
 def stopped(runs: int) -> int:
     """Say that a study was interrupted after so many runs; the exit code for that."""
-    print(f"stopped after {runs} runs: the same command goes on from there", file=sys.stderr)
+    print(
+        f"stopped after {counted(runs, 'run')}: the same command goes on from there",
+        file=sys.stderr,
+    )
     return INTERRUPTED
 
 

@@ -16,6 +16,7 @@ from core.errors import InputError
 from sandbox.cli import arguments
 from sandbox.cli import study as studies
 from sandbox.cli.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
+from scenes.text import counted
 
 if TYPE_CHECKING:
     from sandbox.files.table import Spelling
@@ -373,16 +374,16 @@ def _interrupted(outcome: Outcome, output: Output | None) -> str:
     if outcome.frames and output and output.film:
         one = output.film.suffix.lower() == ".png"
         written.append(
-            f"{'the last frame' if one else f'{outcome.frames} frames'} to {output.film}"
+            f"{'the last frame' if one else counted(outcome.frames, 'frame')} to {output.film}"
         )
     if outcome.pictures and output and output.page:
-        written.append(f"{outcome.pictures} pictures to {output.page}")
+        written.append(f"{counted(outcome.pictures, 'picture')} to {output.page}")
     if outcome.increments and output and output.table:
-        written.append(f"{outcome.rows} rows to {output.table}")
+        written.append(f"{counted(outcome.rows, 'row')} to {output.table}")
     if outcome.increments and output and output.trajectory:
         written.append(f"the trajectory to {output.trajectory}")
     what = f"wrote {' and '.join(written)}" if written else "nothing was written"
-    return f"stopped after {outcome.increments} increments: {what}"
+    return f"stopped after {counted(outcome.increments, 'increment')}: {what}"
 
 
 def _summary(session: Session, outcome: Outcome) -> str:
@@ -392,7 +393,7 @@ def _summary(session: Session, outcome: Outcome) -> str:
     unfinished = sum(str(reason) != "converged" for reason in reasons)
     mean = float(forces.mean()) if len(forces) else 0.0
     return (
-        f"{outcome.frames} frames, {len(reasons)} increments "
+        f"{counted(outcome.frames, 'frame')}, {counted(len(reasons), 'increment')} "
         f"({unfinished or 'none'} did not converge), "
         f"mean {session.frame().curve_label}: {mean:.4g}, state {session.state_hash()}"
     )

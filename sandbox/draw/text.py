@@ -87,6 +87,12 @@ class Type:
         """Width of a text [px]."""
         return _width(text, self.pixels(size), bold)
 
+    def fitting(self, text: str, size: float, width: float, bold: bool = False) -> float:
+        """The largest size up to this one at which the text is no wider than that; the smallest legible one if there is none."""
+        while self.width(text, size, bold) > width and self.pixels(size) > SMALL:
+            size = (self.pixels(size) - 1) / self.scale
+        return size
+
     def shortened(self, text: str, size: float, width: float, bold: bool = False) -> str:
         """The text, or as much of it as fits with an ellipsis; empty if not even that fits."""
         if self.width(text, size, bold) <= width:

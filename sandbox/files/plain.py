@@ -26,7 +26,7 @@ from scenes.text import Text
 LONGEST = 100_000  # letters of a text
 DEEPEST = 4  # texts within texts
 _NOT_FINITE = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
-_SPEC = re.compile(r"[+]?(\.\d)?[defgn%]?")
+_SPEC = re.compile(r"[+]?(\.\d)?[defgn%]?|[^{}|]*(\|[^{}|]*)+")  # of a number, or forms
 
 Arrays = dict[str, NDArray[Any]]
 

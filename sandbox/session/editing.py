@@ -81,7 +81,9 @@ def radii(settings: Values) -> tuple[float, float]:
 def _place(setup: Setup, settings: Values, at: Point, kind: str, label: int) -> Edited:
     packing = setup.packing
     if len(packing) >= MOST_GRAINS:
-        raise InputError(Text("there are {most} grains, and no more fit", most=MOST_GRAINS))
+        raise InputError(
+            Text("there are {most} {most:grain|grains}, and no more fit", most=MOST_GRAINS)
+        )
     if label >= MAX_LABEL:
         label = int(np.setdiff1d(np.arange(len(packing) + 1), packing.label)[0])
     here = np.array([at])

@@ -108,7 +108,7 @@ class Pages:
                 self._left = list(found.leftovers)
                 if found.set_aside:
                     named = (f"{one.path} ({one.why})" for one in found.set_aside)
-                    self.stage.toast(words.SET_ASIDE.format(files="; ".join(named)))
+                    self.stage.toast(words.SET_ASIDE.format(files=words.LIST_SIGN.join(named)))
         self._tell()
 
     def _tell(self) -> None:
@@ -161,12 +161,8 @@ def ago(seconds: float) -> str:
     """How long ago something was."""
     if seconds < MINUTE:
         return words.AGO_NOW
-    if seconds < 1.5 * MINUTE:
-        return words.AGO_MINUTE
     if seconds < HOUR:
         return words.AGO_MINUTES.format(count=round(seconds / MINUTE))
-    if seconds < 1.5 * HOUR:
-        return words.AGO_HOUR
     if seconds < 2 * DAY:
         return words.AGO_HOURS.format(count=round(seconds / HOUR))
     return words.AGO_DAYS.format(count=round(seconds / DAY))

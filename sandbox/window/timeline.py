@@ -152,7 +152,7 @@ class Timeline(Silent):
         if math.isinf(limit):
             self.stage.toast(words.SPEED_TOAST_MOST)
         else:
-            self.stage.toast(words.SPEED_TOAST.format(count=f"{limit * FRAMES:g}"))
+            self.stage.toast(words.SPEED_TOAST.format(count=limit * FRAMES))
 
     def go_by(self, increments: int) -> None:
         """Back, or on through what is kept; beyond that one more increment."""

@@ -3,8 +3,10 @@ there is to be said."""
 
 from __future__ import annotations
 
+import gettext
 import locale
 import os
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -13,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from scenes.text import Text, filled
+from scenes.text import Plural, Text, filled
 
 FOLDER = Path(__file__).parent
 SOURCE = "en"
@@ -73,10 +75,10 @@ def of_environment() -> str:
     """The language of the person at this computer, as far as there is a table of it; English otherwise."""
     variables = ("LC_ALL", "LC_MESSAGES", "LANG")
     said = next((os.environ[name] for name in variables if os.environ.get(name)), "")
-    code = (said or locale.getlocale()[0] or "").lower()
+    spoken = re.split(r"[_.@-]", (said or locale.getlocale()[0] or "").lower())[0]
     # Windows writes German_Germany where others write de_DE.
-    code = "de" if code.startswith("german") else code[:2]
-    return code if code in available() else SOURCE
+    known = (code for code in available() if spoken in (code, table(code)["in_english"].lower()))
+    return next(known, SOURCE)
 
 
 @cache
@@ -102,6 +104,20 @@ def decimal_sign() -> str:
     return str(find("decimal"))
 
 
+@cache
+def plural(code: str) -> Plural:
+    """Which form a word has after a number, by the rule in the table of a language, which is written as gettext has it."""
+    return gettext.c2py(table(code)["plural"])
+
+
+class Word(str):
+    """A text of the tables. ``format`` writes numbers, and the words that go with them, as the present language does."""
+
+    def format(self, *_: object, **values: object) -> str:
+        """The text with its values."""
+        return filled(self, values, decimal_sign(), plural(present()))
+
+
 def say(text: str) -> str:
     """What a scene or the solver says, in the present language; as it is, if nobody has translated it."""
     template = text.template if isinstance(text, Text) else text
@@ -113,7 +129,8 @@ def say(text: str) -> str:
     values = {
         name: say(value) if isinstance(value, str) else value for name, value in text.values.items()
     }
-    return filled(template, values, decimal_sign())
+    forms = plural(present() if key is not None else SOURCE)
+    return filled(template, values, decimal_sign(), forms)
 
 
 @cache

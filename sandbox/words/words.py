@@ -1,7 +1,8 @@
 """Every word that is drawn, in the present language.
 
 ``words.HINT`` is what the tables in sandbox/words have under ``[words] hint``, looked up when it is asked for: never
-import a word by its name, the language can change at any moment. New words go into every table.
+import a word by its name, the language can change at any moment. New words go into every table. Where the form of a word
+hangs on a number the tables have all its forms, in the order of their ``plural``: ``{count} {count:minute|minutes} ago``.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ def __getattr__(name: str) -> str:
     found = language.find("words", name.lower()) if name.isupper() else None
     if found is None:
         raise AttributeError(f"no language has a word {name}")
-    return str(found)
+    return language.Word(found)
 
 
 def title(scene: str, own: str = "") -> str:

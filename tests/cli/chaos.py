@@ -203,9 +203,9 @@ def look(left: Left) -> str:
         assert not whole, "a film with its own name that nobody has finished"
         words += _lost(left, rows)
     elif left.fault != FULL:
-        if match := re.search(r"wrote (\d+) frames", last):
+        if match := re.search(r"wrote (\d+) frames?", last):
             assert int(match[1]) == frames, last
-        if match := re.search(r"(\d+) rows to run\.csv", last):
+        if match := re.search(r"(\d+) rows? to run\.csv", last):
             assert int(match[1]) == len(rows), last
         if "nothing was written" in last:
             assert not rows, last
@@ -240,7 +240,7 @@ def _look_at_study(left: Left) -> str:
             text = path.read_text()
             assert not text or text.endswith("\n"), f"half a line in {path.name}"
             lines += len([json.loads(line) for line in text.splitlines()])
-    if match := re.search(r"stopped after (\d+) runs", left.said):
+    if match := re.search(r"stopped after (\d+) runs?", left.said):
         assert int(match[1]) == lines, left.said
     files.clear(left.folder / "results")
     assert not list((left.folder / "results").rglob(".*"))

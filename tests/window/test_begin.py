@@ -105,9 +105,9 @@ def test_a_file_that_cannot_be_read_is_said_and_the_menu_stays(desk: Desk, tmp_p
     ("seconds", "said"),
     [
         (5.0, "less than a minute ago"),
-        (70.0, "a minute ago"),
+        (70.0, "1 minute ago"),
         (600.0, "10 minutes ago"),
-        (4000.0, "an hour ago"),
+        (4000.0, "1 hour ago"),
         (7200.0, "2 hours ago"),
         (300000.0, "3 days ago"),
     ],

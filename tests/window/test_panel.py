@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 
 import pygame
 import pytest
 
+from sandbox.draw.text import Type
 from sandbox.draw.widgets.controls import (
     Button,
     Choice,
@@ -16,9 +18,12 @@ from sandbox.draw.widgets.controls import (
     TextField,
     parts_of,
 )
+from sandbox.draw.widgets.look import Attention, draw_control
 from sandbox.session.commands import Change, Command, Protocol, Reset
 from sandbox.window.panel.line_edit import Edit
+from sandbox.window.panel.parameters import Wishes
 from sandbox.words import language, words
+from scenes import registry
 from tests.window.desk import Desk
 
 
@@ -29,6 +34,37 @@ def desk() -> Iterator[Desk]:
     place.app.tick()
     yield place
     place.app.close()
+
+
+@pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 3.0)], ids=str)
+def test_no_word_of_the_panel_is_cut_in_any_language(
+    size: tuple[int, int], scale: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All sections, with the parameters of all scenes."""
+    parameters = {p.name: p for name in registry.names() for p in registry.get(name).parameters}
+    monkeypatch.setattr(Wishes, "parameters", lambda _: list(parameters.values()))
+    original, cut = Type.shortened, []
+
+    def shortened(self: Type, text: str, size: float, width: float, bold: bool = False) -> str:
+        shown = original(self, text, size, width, bold)
+        cut.extend([text] * (shown != text))
+        return shown
+
+    desk = Desk(size, scale)
+    with contextlib.closing(desk.app):
+        desk.start()
+        panel = desk.app.panel
+        panel.folded.clear()
+        if not panel.drawer.shown:
+            panel.fold()
+        monkeypatch.setattr(Type, "shortened", shortened)
+        for code in language.available():
+            language.use(code)
+            panel.tick(0.0)
+            assert len(panel._places.all) > len(parameters)
+            for place in panel._places.all:
+                draw_control(desk.app.stage.renderer.painter(), place, Attention())
+            assert cut == [], code
 
 
 def box(desk: Desk, name: str) -> pygame.Rect:

@@ -17,7 +17,7 @@ from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.words import language, words
 from scenes import registry
-from scenes.text import Text, message
+from scenes.text import Text, filled, message
 
 REPOSITORY = Path(__file__).parents[2]
 SOURCES = [
@@ -25,6 +25,10 @@ SOURCES = [
 ]
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOURCES}
 OTHERS = [code for code in language.available() if code != language.SOURCE]
+# Which form goes with which number, by the examples of CLDR.
+COUNTS = (1, 2, 5, 11, 21, 22, 111)
+CLDR = {"en": (0, 1, 1, 1, 1, 1, 1), "de": (0, 1, 1, 1, 1, 1, 1), "uk": (0, 1, 2, 2, 0, 1, 2)}
+FORMS = re.compile(r"\{(\w+):([^{}]*\|[^{}]*)\}")
 
 
 @pytest.fixture(autouse=True)
@@ -43,31 +47,93 @@ def leaves(table: Any, at: str = "") -> Iterator[tuple[str, str]]:
         yield from leaves(value, f"{at}.{key}")
 
 
+def words_of(code: str) -> dict[str, str]:
+    """All texts of a language by where they stand, but what is said of the language itself alone."""
+    return dict(leaves({**language.table(code), "as_in_english": ""}))
+
+
 def placeholders(text: str) -> set[tuple[str, str | None]]:
+    text = FORMS.sub("", text)
     return {(name, spec) for _, name, spec, _ in string.Formatter().parse(text) if name is not None}
 
 
-def test_english_comes_first_and_german_is_there() -> None:
-    assert language.available() == ("en", "de")
+def counted(text: str) -> set[str]:
+    """What is counted in a text by words that have forms."""
+    return {name for name, _ in FORMS.findall(text)}
+
+
+def with_form(text: str, form: int) -> str:
+    """A text with one of the forms of each word."""
+    return FORMS.sub(lambda found: found[2].split("|")[form], text)
+
+
+def test_english_comes_first() -> None:
+    assert language.available()[0] == language.SOURCE
+    assert set(CLDR) <= set(language.available())
 
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_every_table_says_the_same_things(code: str) -> None:
-    source, other = (dict(leaves(language.table(c))) for c in (language.SOURCE, code))
+    source, other = words_of(language.SOURCE), words_of(code)
     assert sorted(other) == sorted(source)
     for key, text in source.items():
-        assert other[key].strip(), key
+        assert other[key].strip() or not text, key
         assert placeholders(other[key]) == placeholders(text), key
         assert ("[" in other[key]) == ("[" in text), key
+        assert counted(text) <= counted(other[key]), key
+
+
+def test_english_counts_with_forms() -> None:
+    """A number of things, without forms, would be wrong of one thing."""
+    texts = words_of(language.SOURCE).values()
+    counts = "|".join({"count"}.union(*map(counted, texts)))
+    wrong = re.compile(rf"\{{({counts})\}} [a-z]+s\b")
+    assert [text for text in texts if wrong.search(text)] == []
+
+
+@pytest.mark.parametrize("code", CLDR)
+def test_which_form_goes_with_which_number(code: str) -> None:
+    assert tuple(map(language.plural(code), COUNTS)) == CLDR[code]
+
+
+@pytest.mark.parametrize("code", language.available())
+def test_every_word_with_a_number_has_the_form_that_goes_with_it(code: str) -> None:
+    """Whether a text is asked for by name or said by a scene."""
+    language.use(code)
+    rule, source = language.plural(code), words_of(language.SOURCE)
+    all_forms = 1 + max(map(rule, range(200)))
+    for key, text in words_of(code).items():
+        for _, forms in FORMS.findall(text):
+            assert forms.count("|") + 1 == all_forms, key
+        names = counted(text) | {name for name, _ in placeholders(text)}
+        for count in COUNTS if counted(text) else ():
+            values = dict.fromkeys(names, count)
+            expected = filled(with_form(text, rule(count)), values, language.decimal_sign())
+            assert language.Word(text).format(**values) == expected
+            if key.startswith(".texts."):
+                assert words.say(Text(source[key], **values)) == expected
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        ("en", "1 minute ago, 2 minutes ago, 21 minutes ago, 111 minutes ago"),
+        ("de", "vor 1 Minute, vor 2 Minuten, vor 21 Minuten, vor 111 Minuten"),
+        ("uk", "1 хвилину тому, 2 хвилини тому, 21 хвилину тому, 111 хвилин тому"),
+    ],
+)
+def test_minutes(code: str, said: str) -> None:
+    language.use(code)
+    assert ", ".join(words.AGO_MINUTES.format(count=count) for count in (1, 2, 21, 111)) == said
 
 
 @pytest.mark.parametrize("code", OTHERS)
 def test_nothing_was_forgotten(code: str) -> None:
     """A text that is the same in both languages is a name, a sign, or a word that both have."""
-    source, other = (dict(leaves(language.table(c))) for c in (language.SOURCE, code))
+    source, other = words_of(language.SOURCE), words_of(code)
     alike = {re.sub(r"\{.*?\}", "", text) for key, text in source.items() if other[key] == text}
-    same_in_german = {"Tour"}
-    assert not {text for text in alike if re.search("[A-Za-z]{4}", text)} - same_in_german
+    both_have = set(language.table(code)["as_in_english"])
+    assert {text for text in alike if re.search("[A-Za-z]{4}", text)} == both_have
 
 
 def test_every_word_that_is_asked_for_is_there_and_none_is_left_over() -> None:
@@ -165,7 +231,9 @@ def test_words_are_looked_up_in_the_present_language() -> None:
 
 def test_texts_are_said_in_the_present_language() -> None:
     inner = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=1.44)
-    outer = Text("{clogged}, held by an arch of {grains} grains", clogged=inner, grains=7)
+    outer = Text(
+        "{clogged}, held by an arch of {grains} {grains:grain|grains}", clogged=inner, grains=7
+    )
     plain = "clogged: 1.4 diameters of stroke, nothing left, held by an arch of 7 grains"
     assert outer == plain
     assert words.say(outer) == plain
@@ -176,6 +244,9 @@ def test_texts_are_said_in_the_present_language() -> None:
     assert words.say("stroke [R]") == "Weg [R]"
     assert words.say("nobody translated this") == "nobody translated this"
     assert words.say(Text("{count} of them", count=-2.5)) == "−2,5 of them"
+    language.use("uk")
+    assert words.say(Text("{n} {n:knot|knots} nobody translated", n=21)).startswith("21 knots")
+    language.use("de")
     label = Text("force on the {label} [k R]", label="piston")
     assert words.say(label) == "Kraft: Kolben [k R]"
 
@@ -201,6 +272,9 @@ def test_an_error_keeps_its_text() -> None:
         ({"LANG": "de_DE", "LC_ALL": "en_GB.UTF-8"}, "en"),
         ({"LANG": "fr_FR.UTF-8"}, "en"),
         ({"LANG": "German_Germany.1252"}, "de"),
+        ({"LANG": "uk_UA.UTF-8"}, "uk"),
+        ({"LANG": "Ukrainian_Ukraine.1251"}, "uk"),
+        ({"LANG": "English_United States.1252"}, "en"),
         ({"LANG": "C"}, "en"),
     ],
     ids=str,
@@ -216,9 +290,9 @@ def test_language_of_the_environment(
 
 
 def test_unknown_language_is_a_plain_mistake() -> None:
-    with pytest.raises(InputError, match="choose en, de"):
+    with pytest.raises(InputError, match=f"choose {', '.join(language.available())}"):
         language.use("tlh")
-    assert language.after("de") == "en"
+    assert language.after(language.available()[-1]) == language.SOURCE
 
 
 @pytest.mark.parametrize("name", registry.names())
@@ -235,7 +309,8 @@ def test_what_a_running_scene_says_is_translated(name: str) -> None:
     said = [frame.curve_label, frame.stroke_label, *frame.notices]
     said += session.table.header()
     said += [handle.label for handle in frame.handles] + [event.text for event in frame.events]
-    language.use("de")
-    untranslated = [text for text in said if words.say(text) == text]
-    assert untranslated == []
-    assert words.title(frame.scene, frame.title) != frame.title
+    for code in OTHERS:
+        language.use(code)
+        untranslated = [text for text in said if words.say(text) == text]
+        assert untranslated == []
+        assert words.title(frame.scene, frame.title) != frame.title

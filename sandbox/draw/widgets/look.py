@@ -128,8 +128,9 @@ def _title(painter: Painter, title: str, more: str, rect: pygame.Rect) -> None:
     if not rect.height:
         return
     type_ = painter.type
-    title = type_.shortened(title, SMALL, rect.width)
-    painter.text(title, rect.left, rect.centery, size=SMALL)
+    size = type_.fitting(title, SMALL, rect.width)
+    title = type_.shortened(title, size, rect.width)
+    painter.text(title, rect.left, rect.centery, size=size)
     room = rect.width - type_.width(title, SMALL) - round(10 * painter.scale)
     if more and type_.width(more, SMALL) <= room:
         soft = painter.theme.soft_text
@@ -222,8 +223,9 @@ def _draw_switch(painter: Painter, switch: Switch, rect: pygame.Rect, hover: boo
     x = plate.right - 0.5 * plate.height if switch.on else plate.left + 0.5 * plate.height
     painter.disc(x, plate.centery, 8.0 * scale, theme.panel if switch.on else theme.soft_text)
     room = plate.left - rect.left - round(10 * scale)
-    title = type_.shortened(switch.title, SMALL, room)
-    painter.text(title, rect.left, rect.centery, size=SMALL)
+    size = type_.fitting(switch.title, SMALL, room)
+    title = type_.shortened(switch.title, size, room)
+    painter.text(title, rect.left, rect.centery, size=size)
     free = room - type_.width(title, SMALL) - round(10 * scale)
     if switch.mark and type_.width(switch.mark, SMALL) <= free:
         painter.text(
@@ -289,7 +291,8 @@ def _draw_button(painter: Painter, button: Button, rect: pygame.Rect, hover: boo
         draw_sign(painter, button.title, inner, colour)
         return
     room = inner.width - round(8 * painter.scale)
-    size = BODY if type_.width(button.title, BODY, button.on) <= room else SMALL
+    large = type_.width(button.title, BODY, button.on) <= room
+    size = BODY if large else type_.fitting(button.title, SMALL, room, button.on)
     text = type_.shortened(button.title, size, room, button.on)
     painter.text(text, *inner.center, size=size, colour=colour, anchor="centre", bold=button.on)
 
