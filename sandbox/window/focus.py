@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import pygame
 
+from sandbox.window.keys import sign_of
 from sandbox.window.parts import Silent
 
 CANVAS = "canvas"  # names of stops on a canvas begin so; the keyboard is there at first
@@ -97,8 +98,7 @@ class Focus(Silent):
     def watch(self, event: pygame.event.Event) -> None:
         """See every key before anybody else does."""
         if event.type == pygame.KEYDOWN:
-            sign = getattr(event, "unicode", "")
-            repeats = event.key in REPEATING or (sign and sign.lower() in REPEATING_SIGNS)
+            repeats = event.key in REPEATING or sign_of(event).lower() in REPEATING_SIGNS
             if event is not self._held:
                 self._held = event if repeats else None
                 self._due = self._now + FIRST_REPEAT
