@@ -448,6 +448,8 @@ def test_states_that_no_command_leads_to(
         ("{x:{y}}", {"x": "a", "y": "b"}),
         ("{y}", {"x": "a"}),
         ("{x:.2f}", {"x": "a"}),
+        ("{x:grain|grains}", {"x": "a"}),
+        ("{x:grain|{y}}", {"x": 1, "y": "b"}),
         ("{", {}),
         ("{x}", {"x": [1]}),
     ],
@@ -459,10 +461,11 @@ def test_templates_that_ask_for_more_than_their_values(
     event = {"kind": "arch", "increment": 0, "stroke": 0.0, "force": 0.0, "text": text}
     change(copy, "state", lambda data: data["going_on"].update(events=[event]))
     assert_refused(copy, "events.0.text")
-    good = {"text": "a", "template": "{x:+.2f} of {y}", "values": {"x": 1.0, "y": "b"}}
+    values = {"x": 1.0, "y": "b", "n": 2}
+    good = {"text": "a", "template": "{x:+.2f} of {y} {n:grain|grains}", "values": values}
     change(copy, "state", lambda data: data["going_on"].update(events=[{**event, "text": good}]))
     (kept,) = Session.from_file(read_scene(copy))._first.file.state.going_on.events  # type: ignore[union-attr]
-    assert kept.text == "+1.00 of b"
+    assert kept.text == "+1.00 of b grains"
 
 
 @pytest.mark.parametrize(
