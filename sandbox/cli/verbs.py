@@ -363,9 +363,11 @@ def _report(sessions: Sequence[Session], outcome: Outcome, output: Output | None
 
 
 def _page_line(outcome: Outcome, output: Output) -> str:
-    line = f"{outcome.pictures} pictures in {output.page}"
+    line = f"{counted(outcome.pictures, 'picture')} in {output.page}"
     if outcome.pictures < outcome.increments // output.every:
-        line += f", of {outcome.increments} increments: a page keeps no more (see --every)"
+        line += (
+            f", of {counted(outcome.increments, 'increment')}: a page keeps no more (see --every)"
+        )
     return line
 
 

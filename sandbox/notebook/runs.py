@@ -15,6 +15,7 @@ from sandbox.session.commands import Protocol
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
 from scenes.scene import Check
+from scenes.text import counted
 
 if TYPE_CHECKING:
     from sandbox.draw.render import Renderer
@@ -126,7 +127,7 @@ class Result:
 
     def __repr__(self) -> str:
         frame = self.frames[-1]
-        return f"<{frame.scene}, {frame.packing}: {len(self.session.history) - 1} increments>"
+        return f"<{frame.scene}, {frame.packing}: {counted(len(self.session.history) - 1, 'increment')}>"
 
 
 def _renderer(size: tuple[int, int], view: str, theme: str) -> Renderer:

@@ -76,6 +76,7 @@ def page(tape: Tape, look: Look | None = None) -> str:
     begins = {"view": look.view, "play": look.play, "auto": look.auto}
     script = (
         f'"use strict";\nconst PAGE = {as_json(_about() | titles | {"start": begins})};\n'
+        f"const PLURALS = [{', '.join(map(_plural, available()))}];\n"
         + "\n".join(asset(name) for name in SCRIPTS)
     )
     code = look.language or language.present()
@@ -129,6 +130,11 @@ def _about() -> dict[str, Any]:
             },
         },
     }
+
+
+def _plural(code: str) -> str:
+    """Which form of a word goes with which number, as a function of the script: gettext's rules read the same there."""
+    return f"(n) => +({language.table(code)['plural']})"
 
 
 def _words(code: str) -> dict[str, str]:

@@ -155,7 +155,7 @@ class Section(Mapping[str, str]):
         found = find(*self._keys, key)
         if found is None:
             raise KeyError(key)
-        return str(found)
+        return Word(found)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._source())

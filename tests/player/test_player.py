@@ -19,6 +19,7 @@ from sandbox.player.coding import Writer, read, unpacked
 from sandbox.player.kept import QUANTITIES
 from sandbox.player.page import SCRIPTS, Look, page
 from sandbox.player.pieces import asset
+from sandbox.player.story import PLAYER
 from sandbox.player.tape import Tape
 from sandbox.record.record import in_step
 from sandbox.session.commands import Protocol
@@ -178,7 +179,9 @@ def test_every_word_of_the_page_is_there_in_every_language(text: str) -> None:
         assert asked <= set(table)
     assert asked - set(tables[0]) == set()
     stories = [a for _, a in Markup(text).found if "data-said" in a]
-    assert [(a["lang"], "hidden" in a) for a in stories] == [("en", True), ("de", False)]
+    assert [(a["lang"], "hidden" in a) for a in stories] == [
+        (code, code != "de") for code in language.available()
+    ]
     assert "Locked" not in text
     assert "Schritt 2: Verkeilt" in text or "Schritt 2: " in text
     head, _ = recorded(text)
@@ -239,13 +242,23 @@ def test_in_a_browser(moments: list[list[Frame]], text: str, tmp_path: Path) -> 
             )
             assert sum(force) == pytest.approx(frame.contacts.force.sum(), rel=0.02)
         press = (
-            "key => document.body.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true}))"
+            "([key, code]) => document.body.dispatchEvent("
+            "new KeyboardEvent('keydown', {key, code, bubbles: true}))"
         )
-        browser.run(f"['v', 'f', 't', 'i', 'i', 'l', 'Home', 'N', 'n'].forEach({press})")
+        keys = [[key, ""] for key in ("v", "f", "t", "i", "i", "Home", "N", "n")]
+        keys += [["д", "KeyL"]] * (len(language.available()) - language.available().index("de"))
+        browser.run(f"{json.dumps(keys)}.forEach({press})")
         assert browser.run("document.documentElement.lang") == "en"
         assert browser.run("document.documentElement.dataset.theme") == "dark"
         assert browser.run("sandboxPlayer.state.moment") == EVENT.increment
         assert browser.run("document.querySelector('#grain h2').textContent").startswith("grain ")
+        for at, code in enumerate(language.available()):
+            with language.speaking(code):
+                told = {"packing": "A", "view": "B", "force": "C", "notice": "D"}
+                for count in (1, 2, 5, 11, 21):
+                    values = {"count": count, **told}
+                    said = browser.run(f"language = {at}; word('picture', {json.dumps(values)})")
+                    assert said == PLAYER["picture"].format(**values)
         assert browser.messages == []
 
 

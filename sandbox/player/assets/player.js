@@ -157,13 +157,21 @@ const OTHERS = {
   Escape: () => lookAt(state.pane, -1),
 };
 
+// What is printed on a key; where that is a letter of another script, what a keyboard with Latin letters has in that place.
+function signOf({ key, code, shiftKey }) {
+  if (!/^\p{L}$/u.test(key) || /^\p{Script=Latin}$/u.test(key)) return key;
+  const place = { Comma: ",", Period: "." }[code] ?? code.replace("Key", "").toLowerCase();
+  return shiftKey ? place.toUpperCase() : place;
+}
+
 function pressed(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const at = event.target;
   const own = at.matches("select, textarea, input:not([type=range])") || (at.matches("input") && event.key.startsWith("Arrow"));
   const pressing = event.key === " " && at.matches("button, summary, a, input[type=checkbox]");
   if (own || pressing) return;
-  const act = OTHERS[event.key] ?? ($("letters").checked ? LETTERS[event.key] ?? LETTERS[event.key.toLowerCase()] : undefined);
+  const sign = signOf(event);
+  const act = OTHERS[event.key] ?? ($("letters").checked ? LETTERS[sign] ?? LETTERS[sign.toLowerCase()] : undefined);
   if (!act) return;
   event.preventDefault();
   act();

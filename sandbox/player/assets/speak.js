@@ -7,10 +7,11 @@ let run; // the recording
 // A text that is there in every language.
 const say = (said) => said[language];
 
-// A word of the page, with its values.
+// A word of the page, with its values: {count}, and after it the form that goes with the number, {count:grain|grains}.
 function word(key, values = {}) {
   const text = run.words[language][key] ?? key;
-  return text.replace(/\{(\w+)\}/g, (_, name) => values[name] ?? "");
+  return text.replace(/\{(\w+)(?::([^{}]*))?\}/g, (_, name, forms) =>
+    (forms ? forms.split("|")[PLURALS[language](values[name])] : values[name]) ?? "");
 }
 
 function number(value, decimals) {
