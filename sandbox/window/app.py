@@ -70,7 +70,7 @@ def run(
         panes = Panes(packing, seed, autosave=autosave.begin(), log=log)
         app = App(panes, looks)
         if films := found_films(Path()):
-            app.stage.toast(words.FILMS_FOUND.format(names=", ".join(films)))
+            app.stage.toast(words.FILMS_FOUND.format(names=words.LIST_SIGN.join(films)))
         clean = False
         try:
             if scene is None:
