@@ -53,7 +53,9 @@ class _Filler(string.Formatter):
     def format_field(self, value: Any, format_spec: str) -> str:
         if "|" in format_spec:
             forms = format_spec.split("|")
-            return forms[min(self._plural(abs(int(value))), len(forms) - 1)]
+            # A range, "1–2", has the form that goes with its end.
+            count = abs(int(value.rpartition("–")[2] if isinstance(value, str) else value))
+            return forms[min(self._plural(count), len(forms) - 1)]
         text = format(value, format_spec)
         if isinstance(value, (int, float)):
             text = text.replace("-", "−").replace(".", self._decimal)

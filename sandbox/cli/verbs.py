@@ -196,7 +196,7 @@ def site(options: argparse.Namespace) -> int:
         print(f"stopped; the pages in {folder} that are there are whole", file=sys.stderr)
         return INTERRUPTED
     size = sum(path.stat().st_size for path in written)
-    print(f"{len(written)} pages, {size / 1e6:.1f} MB: {folder / 'index.html'}")
+    print(f"{counted(len(written), 'page')}, {size / 1e6:.1f} MB: {folder / 'index.html'}")
     if not results.found():
         print("without what was measured: this installation has no assets/studies")
     if size > gallery.MOST:

@@ -125,6 +125,8 @@ def test_every_word_with_a_number_has_the_form_that_goes_with_it(code: str) -> N
 def test_minutes(code: str, said: str) -> None:
     language.use(code)
     assert ", ".join(words.AGO_MINUTES.format(count=count) for count in (1, 2, 21, 111)) == said
+    of_two = words.AGO_MINUTES.format(count=2).replace("2", "1–2")
+    assert words.AGO_MINUTES.format(count="1–2") == of_two
 
 
 @pytest.mark.parametrize("code", OTHERS)
