@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from sandbox.player.kept import Kept, keep
 from sandbox.session.frame import Frame
@@ -11,6 +12,7 @@ MOST_MOMENTS = 800
 MOST_GRAINS = 240_000  # grains times moments: some 12 MB of memory, and 1.5 MB of page
 
 Moment = tuple[Kept, ...]  # side by side
+T = TypeVar("T")
 
 
 class Tape:
@@ -25,21 +27,25 @@ class Tape:
         self._asked, self._most = every, (most_moments, most_grains)
         self._kept: list[Moment] = []
         self._latest: Moment | None = None
-        self.every = every  # increments from one moment to the next
+        self.every = every  # increments from one moment to the next, at least
         self.last: tuple[Frame, ...] = ()  # what was added last
 
     def add(self, frames: Sequence[Frame]) -> None:
         """The state at the start, or after an increment: a frame of each packing, always in the same order."""
         moment = tuple(keep(frame) for frame in frames)
-        now = _increment(moment)
-        while self._kept and _increment(self._kept[-1]) >= now:
+        now = increment_of(moment)
+        while self._kept and increment_of(self._kept[-1]) >= now:
             self._kept.pop()
         if not self._kept:
             self.every = self._asked
         self.last, self._latest = tuple(frames), moment
-        if now % self.every == 0 or not self._kept:
+        if not self._kept or now - increment_of(self._kept[-1]) >= self.every:
             self._kept.append(moment)
-        self._thin()
+        grains = sum(frame.grains for frame in frames)
+        most = max(min(self._most[0], self._most[1] // max(grains, 1)), 2)
+        while len(self._kept) > most:
+            self.every *= 2
+            self._kept = spaced(self._kept, self.every, increment_of)
 
     @property
     def moments(self) -> list[Moment]:
@@ -50,22 +56,23 @@ class Tape:
     @property
     def increments(self) -> int:
         """How many there were."""
-        return 0 if self._latest is None else _increment(self._latest)
+        return 0 if self._latest is None else increment_of(self._latest)
 
     @property
     def thinned(self) -> bool:
         """Has the budget been too small for all that was asked for?"""
         return self.every > self._asked
 
-    def _thin(self) -> None:
-        grains = max(sum(kept.size for kept in moment) for moment in self._kept[-1:])
-        most = max(min(self._most[0], self._most[1] // max(grains, 1)), 2)
-        while len(self._kept) > most:
-            self.every *= 2
-            later = (m for m in self._kept[1:] if _increment(m) % self.every == 0)
-            self._kept = [self._kept[0], *later]
+
+def spaced(moments: Sequence[T], every: int, increment: Callable[[T], int]) -> list[T]:
+    """The first one, and of the others those that come so many increments after the one before, or more."""
+    kept: list[T] = []
+    for moment in moments:
+        if not kept or increment(moment) - increment(kept[-1]) >= every:
+            kept.append(moment)
+    return kept
 
 
-def _increment(moment: Moment) -> int:
+def increment_of(moment: Sequence[Kept | Frame]) -> int:
     """Where the packing stands that has come furthest."""
     return max(kept.increment for kept in moment)

@@ -36,6 +36,7 @@ from sandbox.window.panel.parameters import ParameterSection, Wishes
 from sandbox.window.panel.scene_files import FilesSection
 from sandbox.window.picture import progress_of
 from sandbox.window.question import ExportQuestion
+from sandbox.window.reel import Reel
 from sandbox.window.solvers.panes import Panes
 from sandbox.window.solvers.solver_thread import Snapshot
 from sandbox.window.stage import Stage
@@ -112,7 +113,8 @@ class App:
         self.timeline = Timeline(stage, self.actions)
         self.inspector = Inspector(stage)
         self.brush = Brush(stage)
-        self.question = ExportQuestion(stage)
+        reel = Reel(stage)
+        self.question = ExportQuestion(stage, reel)
         arrows = Arrows(stage)
         self.panel = Panel(stage, self.guide, folded={"solver", "files", "looks"})
         self.panel.sections += [
@@ -136,6 +138,7 @@ class App:
             arrows,
             self.guide,
             stage.focus,
+            reel,
             Canvas(stage),
         ]
         self.farewell = ""  # what is left to say when the window is closed

@@ -1,4 +1,4 @@
-"""Asks how the curves are to be written before they are: for programs, or for the Excel of this country."""
+"""Asks what is to be written before it is: the curves for programs or for the Excel of this country, or the run as a page."""
 
 from __future__ import annotations
 
@@ -10,17 +10,20 @@ from sandbox.files.table import PLAIN, Spelling, for_excel
 from sandbox.window.export import export
 from sandbox.window.keys import PACKING_ACTIONS, Action, action_of
 from sandbox.window.parts import Silent
+from sandbox.window.reel import Reel
 from sandbox.window.stage import Stage
 from sandbox.words import words
 
+ANSWERS = 3
+PAGE = 2  # the last of them
 STEPS = {Action.UP: -1, Action.LEFT: -1, Action.DOWN: 1, Action.RIGHT: 1}
 
 
 class ExportQuestion(Silent):
     """While it is asked all keys and the mouse are for it; the answer of last time comes first."""
 
-    def __init__(self, stage: Stage) -> None:
-        self.stage = stage
+    def __init__(self, stage: Stage, reel: Reel) -> None:
+        self.stage, self.reel = stage, reel
         self.asking = False
         self._place = 0
         self._answers: list[pygame.Rect] = []
@@ -34,8 +37,8 @@ class ExportQuestion(Silent):
                 self.stage.redraw(True)
             return self.asking
         if action in STEPS:
-            self._place = (self._place + STEPS[action]) % 2
-        elif action in PACKING_ACTIONS[:2]:
+            self._place = (self._place + STEPS[action]) % ANSWERS
+        elif action in PACKING_ACTIONS[:ANSWERS]:
             self._answer(PACKING_ACTIONS.index(action))
         elif action in (Action.ENTER, Action.PAUSE, Action.EXPORT):
             self._answer(self._place)
@@ -66,6 +69,9 @@ class ExportQuestion(Silent):
 
     def _answer(self, place: int) -> None:
         self.asking, self._place = False, place
+        if place == PAGE:
+            self.stage.toast(self.reel.save())
+            return
         frames = [pane[0] for pane in self.stage.picture.panes()]
         shown = self.stage.panes.curves.shown(frames[0])
         self.stage.toast(export(frames, shown, _spelling(place)))
@@ -76,6 +82,7 @@ class ExportQuestion(Silent):
             answers = (
                 (words.EXPORT_PLAIN, words.EXPORT_PLAIN_HELP),
                 (words.EXPORT_EXCEL, words.EXPORT_EXCEL_HELP),
+                (words.EXPORT_PAGE, words.EXPORT_PAGE_HELP),
             )
             asked = Asked(words.EXPORT_ASK, answers, words.EXPORT_WITHOUT)
             self._answers = draw_question(painter, asked, self._place)
