@@ -4,19 +4,19 @@
 
 Linux only, as it looks for processes in /proc. ``test_chaos.py`` does each of it once. What is tried:
 
-| what is at work               | kill -9 | SIGTERM | SIGINT | SIGHUP | full disk |
-| ----------------------------- | ------- | ------- | ------ | ------ | --------- |
-| record, film and table        | yes     | yes     | yes    | yes    | yes       |
-| record, animation and table   | yes     | yes     | yes    | yes    | yes       |
-| record, side by side          | yes     | yes     | yes    | yes    | yes       |
-| replay, that also goes back   | yes     | yes     | yes    | yes    | yes       |
-| study, two processes          | yes     | yes     | yes    | yes    | no        |
-| play                          | no: tests/window, as it needs a screen              |
+| what is at work                      | kill -9 | SIGTERM | SIGINT | SIGHUP | full disk |
+| ------------------------------------ | ------- | ------- | ------ | ------ | --------- |
+| record, film and table               | yes     | yes     | yes    | yes    | yes       |
+| record, animation, table, trajectory | yes     | yes     | yes    | yes    | yes       |
+| record, side by side                 | yes     | yes     | yes    | yes    | yes       |
+| replay, that also goes back          | yes     | yes     | yes    | yes    | yes       |
+| study, two processes                 | yes     | yes     | yes    | yes    | no        |
+| play                                 | no: tests/window, as it needs a screen          |
 
 A full disk is a small file system of its own where this may mount one, else a limit to the size of files. Moments before the
 first sign of life, while Python itself starts, are left out. After each: no process is left; a table has whole rows, and of
-what was drawn before a kill -9 nothing older than a moment is missing in it; a film is the earlier one or whole; what the
-program has said of them is true; no hidden file is left, after a kill -9 once the same file is asked for again.
+what was drawn before a kill -9 nothing older than a moment is missing in it; a film is the earlier one or whole, and so is a
+trajectory; what the program has said of them is true; no hidden file is left, after a kill -9 once the same is asked for again.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import imageio.v2
+import numpy as np
 
 from core import files
 from core.errors import InputError
@@ -52,11 +53,12 @@ LONGEST = 8.0  # after the first sign of life [s]
 ROOM = 50_000  # bytes of the full disk
 EARLIER = b"earlier"
 HOPPER = ["hopper", "--steps", "100000", "--size", "320x240"]
+TRAJECTORY = ["--trajectory", "run.npz"]
 WORKS = {
     "film": ["record", *HOPPER, "--out", "film.mp4", "--data", "run.csv"],
-    "animation": ["record", *HOPPER, "--out", "film.gif", "--data", "run.csv"],
+    "animation": ["record", *HOPPER, "--out", "film.gif", "--data", "run.csv", *TRAJECTORY],
     "side by side": ["record", *HOPPER, "--compare", "regular,auxetic", "--data", "run.csv"],
-    "replay": ["replay", "log.jsonl", "--out", "film.mp4", "--data", "run.csv"],
+    "replay": ["replay", "log.jsonl", "--out", "film.mp4", "--data", "run.csv", *TRAJECTORY],
     "study": ["study", "hand", "--quick", "--out", "results"],
 }
 FULL = "full disk"
@@ -198,15 +200,19 @@ def look(left: Left) -> str:
     frames = frames_of(folder / str(film)) if whole else 0
     if whole:
         words.append(f"{frames} frames")
+    moments = _moments(folder / "run.npz")
     last = left.said.strip().rpartition("\n")[2]
     if killed:
         assert not whole, "a film with its own name that nobody has finished"
+        assert not moments, "a trajectory that nobody has finished"
         words += _lost(left, rows)
     elif left.fault != FULL:
         if match := re.search(r"wrote (\d+) frames?", last):
             assert int(match[1]) == frames, last
         if match := re.search(r"(\d+) rows? to run\.csv", last):
             assert int(match[1]) == len(rows), last
+        assert bool(moments) == ("run.npz" in last), last
+        assert not moments or left.work == "replay" or moments == len(rows), "a frame is missing"
         if "nothing was written" in last:
             assert not rows, last
             assert not whole, last
@@ -215,6 +221,15 @@ def look(left: Left) -> str:
         assert int(match[1]) == len(rows), last
     _tidy(folder, film, killed=killed)
     return ", ".join(words)
+
+
+def _moments(path: Path) -> int:
+    """How many frames a trajectory has, if there is one; it must be whole."""
+    if not path.exists():
+        return 0
+    with np.load(path) as arrays:
+        assert all(arrays[name].size >= 0 for name in arrays)
+        return len(arrays["increment"])
 
 
 def _lost(left: Left, rows: list[list[str]]) -> list[str]:

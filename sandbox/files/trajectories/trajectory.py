@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Protocol, Self
@@ -75,12 +76,15 @@ class Trajectory:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        with deferred(), self._aside:
-            if self.frames and (kind is None or issubclass(kind, KeyboardInterrupt)):
-                try:
+        with deferred():
+            try:
+                if self.frames and (kind is None or issubclass(kind, KeyboardInterrupt)):
                     self._writer.finish()
-                except OSError as failed:
-                    raise self._failed(failed) from failed
+            except OSError as failed:
+                raise self._failed(failed) from failed
+            finally:
+                with suppress(OSError):  # a full disk, that has been told
+                    self._aside.close()
 
     def _failed(self, error: OSError) -> InputError:
         kept = "; the earlier file was kept" if self.path.exists() else ""
