@@ -105,7 +105,7 @@ ROOMS = {
     "studies.paper": f"studies.hand {STUDY}",
     "studies.classics": STUDY,
     "studies.clogging": f"sweep studies.classics {STUDY}",
-    "studies.bench": STUDY,
+    "studies.bench": f"sweep {STUDY}",
     "studies.hand": f"lessons {STUDY}",
     "studies.common": "core",
     "lessons": "session scenes core",

@@ -72,14 +72,14 @@ def _carry_out(tables: Tables, jobs: Sequence[Job], some: Workers, at_once: int)
         jobs,
         done,
         failed,
-        prepare=partial(compile_all, _sorts(jobs)),
+        prepare=partial(compile_all, sorts(jobs)),
         label=lambda job: f"{job.scene}, {job.packing}"[:32].ljust(32),
     )
     carry_out_all(batch, some, at_once, len(tables.runs))
     return lost
 
 
-def _sorts(jobs: Iterable[Job]) -> tuple[Ingredients, ...]:
+def sorts(jobs: Iterable[Job]) -> tuple[Ingredients, ...]:
     """All sorts of kernels that the jobs need, each once."""
     return tuple(dict.fromkeys(registry.get(job.scene).ingredients(job.settings) for job in jobs))
 

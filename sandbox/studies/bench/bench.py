@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from sandbox.studies.bench import drains as bench_drains
 from sandbox.studies.bench import drawing as bench_drawing
 from sandbox.studies.bench import frames as bench_frames
 from sandbox.studies.bench import kernels as bench_kernels
@@ -46,6 +47,7 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     if plan.threads_seconds > 0.0:
         yield lambda: bench_threads.section(seconds=plan.threads_seconds)
     yield lambda: bench_frames.section(frames=plan.frames)
+    yield lambda: bench_drains.section(quick=quick)
     yield lambda: bench_drawing.section(seconds=plan.drawing_seconds)
 
 
