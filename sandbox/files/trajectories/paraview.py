@@ -5,7 +5,7 @@
 - contacts: a line each, from centre to centre or to where a body is touched. Of cells: force on the first grain, friction
   included [k R], normal_force and tangential_force [k R], first and second (ids of the grains, -1: a body), body (place among
   the frame's bodies, -1: a grain). Of points: normal_force once more, for tubes as wide as the force.
-- bodies: polygons, discs as such; walls without thickness are lines. Of cells: body.
+- bodies: their shapes, a polygon each. Of cells: body.
 
 Numbers are of double precision, in base64. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
@@ -128,17 +128,24 @@ def _contacts(state: State) -> bytes:
 
 
 def _bodies(state: State) -> bytes:
-    lines, polygons, of_lines, of_polygons = [], [], [], []
-    around = np.linspace(0.0, 2.0 * np.pi, CORNERS, endpoint=False)
-    circle = np.column_stack([np.cos(around), np.sin(around)])
+    outlines, numbers = [], []
     for number, body in enumerate(state.frame.bodies):
-        lines += [row[:4].reshape(2, 2) for row in body.segments]
-        of_lines += [number] * len(body.segments)
-        discs = [row[:2] + row[2] * circle for row in body.discs]
-        polygons += [*body.polygons, *discs]
-        of_polygons += [number] * (len(body.polygons) + len(discs))
-    data = {"body": np.array([*of_lines, *of_polygons], dtype=np.int64)}
-    return _poly_data(lines=lines, polygons=polygons, cells=data)
+        own = [
+            *body.polygons,
+            *(_capsule(x, y, x, y, radius) for x, y, radius in body.discs),
+            *(_capsule(*row) for row in body.segments),
+        ]
+        outlines += own
+        numbers += [number] * len(own)
+    return _poly_data(polygons=outlines, cells={"body": np.array(numbers, dtype=np.int64)})
+
+
+def _capsule(x0: float, y0: float, x1: float, y1: float, radius: float) -> Floats:
+    """The outline of all that is as near to a line as ``radius``: half a circle around each end, (n, 2) [R]."""
+    half = np.linspace(-0.5 * np.pi, 0.5 * np.pi, CORNERS // 2 + 1)
+    turn = np.arctan2(y1 - y0, x1 - x0) + np.concatenate([half, np.pi + half])
+    ends = np.repeat([[x1, y1], [x0, y0]], len(half), axis=0)
+    return ends + radius * np.column_stack([np.cos(turn), np.sin(turn)])
 
 
 def _in_space(plane: Floats) -> Floats:
