@@ -10,7 +10,7 @@ twice, once from each side: that costs arithmetic, which is cheap, and saves the
 over a grain's contacts independent of every other grain, hence of the number of threads.
 
 While contacts are summed, rows 2–4 of ``force`` hold A = Σ f/h, B = Σ f cos 2φ/h, D = Σ f sin 2φ/h; ``elasticity.finish`` turns
-them into the forces on (p, q1, q2).
+them into the forces on (p, q1, q2). Friction adds to B and D (``slip``).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 
 from core.jit import kernel
 from core.periodic import COINCIDENT, nearest
-from core.slip import TANGENTIAL_STIFFNESS, TOUCHED, pair_slip
+from core.slip import TANGENTIAL_STIFFNESS, TOUCHED, cut, own_way, pair_slip
 
 
 @kernel(noalias=True)
@@ -64,21 +64,17 @@ def slot_forces(
     box,
     begin,
     first,
-    state,
     coefficient,
     change,
     marks,
-    m11,
-    m12,
-    m21,
-    m22,
+    pulls,
     deep,
 ):
     """Add the contacts of n grains in one slot; return their energy.
 
     ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,). xs … vs and fx … d (n,) are of these grains, x … v (N,) of all.
-    With friction ``state`` (6, N) and the rest are as in ``FrictionTerms``, ``begin`` is the place of the first of the grains and
-    ``first`` of their first entry; without it all seven are None, and no code for it exists.
+    With friction ``begin`` is the place of the first of the grains and ``first`` of their first entry, the rest as in
+    ``FrictionTerms``; without it all these are None, and no code for it exists.
     Where two centres coincide the direction is undefined: the pair then has an energy but no force, and nothing becomes nan.
     """
     energy = 0.0
@@ -87,85 +83,71 @@ def slot_forces(
         dx, dy = nearest(x[j] - xs[i], y[j] - ys[i], box)
         ui = us[i]
         vi = vs[i]
-        if marks is None:
-            sj = s[j]
-            uj = u[j]
-            vj = v[j]
-        else:  # shapes are needed themselves, and cost less than more values from scattered places
-            pj, q1j, q2j = state[2, j], state[3, j], state[4, j]
-            sj = pj * pj + q1j * q1j + q2j * q2j
-            uj = 2.0 * pj * q1j
-            vj = 2.0 * pj * q2j
+        sj = s[j]
+        uj = u[j]
+        vj = v[j]
         # Roots and divisions set the pace: three of the one, two of the other, as few as possible after another.
         r2 = dx * dx + dy * dy + COINCIDENT
         r = math.sqrt(r2)
         inverse2 = 1.0 / r2
         inverse = r * inverse2
-        c2 = (dx * dx - dy * dy) * inverse2
-        s2 = 2.0 * dx * dy * inverse2
-        hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
-        hj = math.sqrt(sj + uj * c2 + vj * s2)
-        overlap = hi + hj - r
-        # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
-        overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
         if marks is None:
+            c2 = (dx * dx - dy * dy) * inverse2
+            s2 = 2.0 * dx * dy * inverse2
+            hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
+            hj = math.sqrt(sj + uj * c2 + vj * s2)
+            overlap = hi + hj - r
+            # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
+            overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
             both = 1.0 / (hi * hj)
+            inverse_hi = hj * both
+            inverse_hj = hi * both
         else:
+            # Here the chain of operations sets the pace: with h r for h, roots need not wait for a division. λ has one in common.
             e = np.uint64(first + i)
-            reached = overlap + marks[1, e] + TOUCHED
-            both = 1.0 / (hi * hj * reached)
-            touched = (overlap + TOUCHED) * hi * hj * both
-            both *= reached
-        inverse_hi = hj * both
-        inverse_hj = hi * both
+            c2 = dx * dx - dy * dy
+            s2 = 2.0 * dx * dy
+            hi = math.sqrt(ss[i] * r2 + ui * c2 + vi * s2)
+            hj = math.sqrt(sj * r2 + uj * c2 + vj * s2)
+            c2 *= inverse2
+            s2 *= inverse2
+            overlap = hi + hj - r2
+            overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
+            reached = overlap + (marks[1, e] + TOUCHED) * r
+            both = hi * hj
+            share = 1.0 / (reached * both)
+            touched = overlap * (both * share)
+            both = reached * share * r
+            inverse_hi = hj * both
+            inverse_hj = hi * both
+            overlap *= inverse
         f = stiffness[i] * overlap
         energy += 0.25 * f * overlap  # each pair is met twice
         fi = f * inverse_hi
         fj = f * inverse_hj
+        turn = (fi * (vi * c2 - ui * s2) + fj * (vj * c2 - uj * s2)) * inverse2
         if marks is not None:
             # Unsigned, as an index that might be negative would have to be asked each time.
             k = np.uint64(begin + i)
-            nx = dx * inverse
-            ny = dy * inverse
-            exi = ((state[2, k] + state[3, k]) * nx + state[4, k] * ny) * inverse_hi
-            eyi = (state[4, k] * nx + (state[2, k] - state[3, k]) * ny) * inverse_hi
             slip = pair_slip(
-                nx,
-                ny,
-                dx - marks[2, e],
-                dy - marks[3, e],
+                (dx * (dy - marks[3, e]) - dy * (dx - marks[2, e])) * inverse,
                 overlap,
                 touched,
                 marks[0, e],
-                exi,
-                eyi,
-                change[0, k],
-                change[1, k],
-                change[2, k],
+                own_way(change[0, k], change[1, k], change[2, k], c2, s2) * inverse_hi,
+                own_way(change[0, j], change[1, j], change[2, j], c2, s2) * inverse_hj,
                 change[3, k],
-                change[4, k],
-                ((pj + q1j) * nx + q2j * ny) * inverse_hj,
-                (q2j * nx + (pj - q1j) * ny) * inverse_hj,
-                change[0, j],
-                change[1, j],
-                change[2, j],
                 change[3, j],
-                change[4, j],
             )
-            limit = coefficient * overlap / TANGENTIAL_STIFFNESS
-            slip = max(min(slip, limit), -limit)
+            slip, _ = cut(slip, overlap, coefficient)
             pull = TANGENTIAL_STIFFNESS * stiffness[i] * slip
             energy += 0.25 * pull * slip
-            along_x = pull * ny  # − pull t
-            along_y = -pull * nx
-            fx[i] += along_x
-            fy[i] += along_y
-            m11[i] += along_x * exi
-            m12[i] += along_x * eyi
-            m21[i] += along_y * exi
-            m22[i] += along_y * eyi
+            turn -= pull * inverse  # along − t
+            g = pull * inverse_hi
+            b[i] -= g * s2
+            d[i] += g * c2
+            pulls[i] += g
             deep[i] += 0.5 * pull * overlap
-        turn = (fi * (vi * c2 - ui * s2) + fj * (vj * c2 - uj * s2)) * inverse2
         f *= inverse
         fx[i] -= f * dx + turn * dy
         fy[i] += turn * dx - f * dy
@@ -199,7 +181,7 @@ def add_contact_forces(
 ):
     """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²].
 
-    What friction does to shapes and spins goes to ``friction.sums``, since rows 2–4 hold contact sums.
+    What friction alone does to shapes and spins goes to ``friction.sums``.
     """
     energy = 0.0
     coefficient = None if friction is None else friction.coefficient
@@ -232,15 +214,11 @@ def add_contact_forces(
             box,
             begin,
             first + begin,
-            state,
             coefficient,
             change,
             marks,
             None if friction is None else sums[0, begin:last],
             None if friction is None else sums[1, begin:last],
-            None if friction is None else sums[2, begin:last],
-            None if friction is None else sums[3, begin:last],
-            None if friction is None else sums[4, begin:last],
         )
     return energy
 

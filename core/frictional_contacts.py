@@ -128,8 +128,8 @@ class FrictionalContacts:
         self.terms = FrictionTerms(
             coefficient=origin.coefficient,
             origin=np.zeros((4, count)),
-            change=np.zeros((5, count)),
-            sums=np.zeros((5, count)),
+            change=np.zeros((4, count)),
+            sums=np.zeros((2, count)),
             marks=np.zeros((4, 0)),
             body_marks=np.zeros((4, 0)),
             turn=origin.turn,

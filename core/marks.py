@@ -10,7 +10,7 @@ import math
 from core.jit import kernel
 from core.periodic import COINCIDENT, nearest
 from core.rigid_contacts import EDGE, VERTEX, image, nearest_direction, past_end, touch
-from core.slip import TANGENTIAL_STIFFNESS, body_slip, pair_slip, share_touched
+from core.slip import body_slip, cut, own_way, pair_slip, share_touched
 
 
 @kernel
@@ -105,28 +105,17 @@ def slips(at_i, at_j, primitive, marks, state, friction, primitives, box, place,
                 continue
             j = at_j[k]
             nx, ny, hi, hj = place[3, k], place[4, k], place[5, k], place[6, k]
+            c2 = nx * nx - ny * ny
+            s2 = 2.0 * nx * ny
             u = pair_slip(
-                nx,
-                ny,
-                place[1, k] - marks[2, k],
-                place[2, k] - marks[3, k],
+                nx * (place[2, k] - marks[3, k]) - ny * (place[1, k] - marks[2, k]),
                 overlap,
                 share_touched(overlap, marks[1, k]),
                 marks[0, k],
-                ((p[i] + q1[i]) * nx + q2[i] * ny) / hi,
-                (q2[i] * nx + (p[i] - q1[i]) * ny) / hi,
-                change[0, i],
-                change[1, i],
-                change[2, i],
+                own_way(change[0, i], change[1, i], change[2, i], c2, s2) / hi,
+                own_way(change[0, j], change[1, j], change[2, j], c2, s2) / hj,
                 change[3, i],
-                change[4, i],
-                ((p[j] + q1[j]) * nx + q2[j] * ny) / hj,
-                (q2[j] * nx + (p[j] - q1[j]) * ny) / hj,
-                change[0, j],
-                change[1, j],
-                change[2, j],
                 change[3, j],
-                change[4, j],
             )
         else:
             m = primitive[k - pairs]
@@ -137,27 +126,22 @@ def slips(at_i, at_j, primitive, marks, state, friction, primitives, box, place,
             )
             if overlap <= 0.0:
                 continue
-            nx = -nx
-            ny = -ny
+            c2 = nx * nx - ny * ny
+            s2 = 2.0 * nx * ny
             u = body_slip(
-                nx,
-                ny,
+                -nx,
+                -ny,
                 overlap,
                 h,
                 x - primitives[m, 1],
                 y - primitives[m, 2],
-                ((p[i] + q1[i]) * nx + q2[i] * ny) / h,
-                (q2[i] * nx + (p[i] - q1[i]) * ny) / h,
-                change,
-                i,
+                own_way(change[0, i], change[1, i], change[2, i], c2, s2) / h,
                 marks,
                 k,
                 turn[m],
                 box,
             )
-        limit = friction.coefficient * overlap / TANGENTIAL_STIFFNESS
-        held[0, k] = max(min(u, limit), -limit)
-        held[1, k] = limit
+        held[0, k], held[1, k] = cut(u, overlap, friction.coefficient)
 
 
 @kernel

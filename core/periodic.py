@@ -6,8 +6,8 @@ import numpy as np
 
 from core.jit import kernel
 
-# [R²] keeps 1/r finite for coincident centres; far below rounding for all others
-COINCIDENT = 1e-290
+# [R²] keeps 1/r finite for coincident centres, and products of a few of them; far below rounding for all others
+COINCIDENT = 1e-60
 
 
 @kernel

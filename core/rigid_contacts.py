@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.jit import kernel
-from core.slip import TANGENTIAL_STIFFNESS, body_slip
+from core.slip import TANGENTIAL_STIFFNESS, body_slip, cut, own_way
 
 EDGE, VERTEX, DISC = 0, 1, 2
 COLUMNS = 8
@@ -282,23 +282,28 @@ def add_rigid_forces(state, support_coefficients, contact_stiffness, force, rigi
         b[i] += g * (nx * nx - ny * ny)
         d[i] += g * 2.0 * nx * ny
         if friction is not None:
-            rx = xi - primitives[m, 1]
-            ry = yi - primitives[m, 2]
-            nx = -nx
-            ny = -ny
-            ex = ((state[2, i] + state[3, i]) * nx + state[4, i] * ny) / h
-            ey = (state[4, i] * nx + (state[2, i] - state[3, i]) * ny) / h
-            slip = body_slip(nx, ny, overlap, h, rx, ry, ex, ey, change, i, marks, k, turn[m], box)
-            limit = coefficient * overlap / TANGENTIAL_STIFFNESS
-            slip = max(min(slip, limit), -limit)
+            c2 = nx * nx - ny * ny
+            s2 = 2.0 * nx * ny
+            slip = body_slip(
+                -nx,
+                -ny,
+                overlap,
+                h,
+                xi - primitives[m, 1],
+                yi - primitives[m, 2],
+                own_way(change[0, i], change[1, i], change[2, i], c2, s2) / h,
+                marks,
+                k,
+                turn[m],
+                box,
+            )
+            slip, _ = cut(slip, overlap, coefficient)
             pull = TANGENTIAL_STIFFNESS * contact_stiffness[i] * slip
             energy += 0.5 * pull * slip
-            along_x = pull * ny  # − pull t
-            along_y = -pull * nx
-            fx[i] += along_x
-            fy[i] += along_y
-            sums[0, i] += along_x * ex
-            sums[1, i] += along_x * ey
-            sums[2, i] += along_y * ex
-            sums[3, i] += along_y * ey
+            fx[i] -= pull * ny  # along − t
+            fy[i] += pull * nx
+            g = pull / h
+            b[i] -= g * s2
+            d[i] += g * c2
+            sums[0, i] += g
     return energy
