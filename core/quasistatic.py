@@ -22,13 +22,13 @@ from core.engine_state import EngineState, keep_bodies, keep_packing, place_bodi
 from core.errors import InputError
 from core.friction import Friction
 from core.frictional_contacts import FrictionForces
-from core.hand import CELL, Push, force_on_body, force_on_box
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, passed_faces
 from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point, RigidWorld
 from core.settings import LONGEST_STEP
 from core.system import System
+from core.tries import Tries
 
 
 @dataclass(frozen=True)
@@ -72,12 +72,7 @@ class Quasistatic:
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
         self._own_motion: Floats = np.zeros_like(self._carried)
         self._last_moved: dict[str, Point] = {}
-        self._moved: dict[str, Point] = {}
-        self._pulled: dict[str, Point] = {}
-        self._stopped: dict[str, str] = {}
-        self._asked: tuple[dict[str, Point], PeriodicBox | None] = {}, None
-        self._push = Push(self.system.solver.hand_strength, 0.0)
-        self._spent = 0  # force evaluations of the tries before this one
+        self._tries = Tries(system, {})
 
     @property
     def packing(self) -> Packing:
@@ -148,19 +143,16 @@ class Quasistatic:
         """
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
-        self._asked = dict(targets), box
-        self._push, self._spent = Push(self.system.solver.hand_strength, -math.inf), 0
+        self._tries = Tries(self.system, targets, box)
         state, cell, placement = self.packing.state.copy(), self.packing.box, self.world.placement()
         try:
-            self._begin(targets, box)
+            self._begin()
         except InputError:
             self.packing.state[:], self.packing.box = state, cell
             self.world.place(placement)
             raise
 
-    def _begin(self, targets: dict[str, Point], box: PeriodicBox | None) -> None:
-        self._moved, self._stopped = {}, {}
-        self._pulled = {name: self._way_of_hand(name, target) for name, target in targets.items()}
+    def _begin(self) -> None:
         if self.system.relaxes and part_coincident(
             self.packing, (self._contacts or self.contacts())[0]
         ):
@@ -172,18 +164,17 @@ class Quasistatic:
         self._placement = self.world.placement()
         rows_then, owner = self.world.primitives()
         rows_then = endless(rows_then, self.packing.box)
-        self._move_bodies(targets)
-        self._start, self._start_box = self.packing.state.copy(), self.packing.box
+        self._tries.move_bodies(self.reactions)
         origin = None
         if self.friction is not None:
             ways = self._placement, self.world.placement()
             origin = self.friction.begin(self.packing, rows_then, owner, *ways)
+        # Neither writes into it.
+        self._start = self.packing.state.copy() if origin is None else origin.state
+        self._start_box = self.packing.box
         if self.system.follow is not None:
             self.system.follow(self.packing, self.world)
-        stepped = self._box_towards(box, self._push.share * self.system.solver.step)
-        if box is not None and self._push.share < 1.0:
-            self._stopped[CELL] = "force limit"
-        self._squeeze(stepped)
+        self._squeeze(self._tries.cell(self._start_box))
         self._carried = self.packing.state[:2].copy()
         if self.system.relaxes and self.system.drag == 0.0:
             self._predict()
@@ -240,14 +231,14 @@ class Quasistatic:
         if good and self.friction is not None and held is not None:
             keys, slips, forces, turned = held
             self.friction.end(keys, slips, turned)
-        if self._limited and self._tries_again(contacts if good else None, forces):
-            self._spent += report.iterations
+        if self._tries.limited and self._tries_again(contacts if good else None, forces):
+            self._tries.spent += report.iterations
             self._take_back()
             self.system.friction = remembered
-            self._begin(*self._asked)
+            self._begin()
             return None
-        report = replace(report, iterations=self._spent + report.iterations)
-        if good and contacts and self._limited and self._creeps(contacts, forces):
+        report = replace(report, iterations=self._tries.spent + report.iterations)
+        if good and contacts and self._tries.limited and self._creeps(contacts, forces):
             # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
             self._take_back()
             self.system.friction = remembered
@@ -259,49 +250,17 @@ class Quasistatic:
             unbalanced[:] = 0.0
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
-        self._last_moved = self._moved
-        self._contacts = contacts or self.contacts()
-        return self._observe(report, self._contacts, unbalanced, forces)
-
-    @property
-    def _limited(self) -> bool:
-        """True if a hand of limited strength is at work in this increment."""
-        targets, box = self._asked
-        return math.isfinite(self.system.solver.hand_strength) and bool(targets or box is not None)
+        self._last_moved = self._tries.moved
+        self._contacts = pairs, bodies = contacts or self.contacts()
+        self.reactions = self._measure(bodies, forces)
+        beyond = 0.0
+        if forces is not None and self.friction is not None:
+            beyond = forces.beyond_cone(self.friction.coefficient, pairs, bodies)
+        return self._observe(report, unbalanced, forces, beyond)
 
     def _remembered(self) -> Friction | None:
         """What frictional contacts remember, where the increment may have to be done again."""
-        return None if self.friction is None or not self._limited else self.friction.copy()
-
-    def _way_of_hand(self, name: str, target: Point) -> Point:
-        """The way in which the hand pulls a body, a unit vector; 0 at its target."""
-        body = self.world[name]
-        way = target[0] - body.position[0], target[1] - body.position[1]
-        if body.axis is not None:
-            along = np.sign(way[0] * body.axis[0] + way[1] * body.axis[1])
-            return float(along * body.axis[0]), float(along * body.axis[1])
-        length = math.hypot(*way)
-        return (way[0] / length, way[1] / length) if 0.0 < length < math.inf else (0.0, 0.0)
-
-    def _move_bodies(self, targets: dict[str, Point]) -> None:
-        """Each body towards its target, by the share of a step that is tried, unless the grains push it harder than the hand."""
-        share, solver = self._push.share, self.system.solver
-        forces = {}
-        for name, target in targets.items():
-            pull = self._pulled[name]
-            forces[name] = force_on_body(self._push_on(name, self.reactions), pull)
-            if share == 0.0:
-                moved, stopped = (0.0, 0.0), None
-            elif self._push.too_much(forces[name]):
-                moved, stopped = self.world.give_way(name, pull, solver.step), "force limit"
-            else:
-                moved, stopped = self.world.advance(name, target, share * solver.step)
-            self._moved[name] = moved
-            if share < 1.0:
-                stopped = "force limit"
-            if stopped is not None:
-                self._stopped[name] = stopped
-        self._push.before = max(forces.values(), default=-math.inf)
+        return None if self.friction is None or not self._tries.limited else self.friction.copy()
 
     def _tries_again(
         self,
@@ -309,23 +268,9 @@ class Quasistatic:
         friction: FrictionForces | None,
     ) -> bool:
         """After a try, ``contacts`` None if it led to nothing: has the hand overpowered itself? Then a shorter way is set."""
-        if not any(math.hypot(*moved) > 0.0 for moved in self._moved.values()) and (
-            self.packing.box == self._start_box
-        ):
-            return False
-        if self._asked[0] and self._push.too_much(self._push.before):
-            return False  # it has given way
-        if contacts is None:
-            force = math.inf
-        else:
-            force = self._hand_force(contacts[0], self._measure(contacts[1], friction))
-            if not self._asked[0]:
-                before = self._contacts or self.contacts()
-                self._push.before = self._hand_force(before[0], self.reactions)
-        if not self._push.overpowered(force):
-            return False
-        self._push.shorten(force)
-        return True
+        force = math.inf if contacts is None else self._force_after(contacts, friction)
+        before = self._hand_force((self._contacts or self.contacts())[0], self.reactions)
+        return self._tries.again(force, before, squeezed=self.packing.box != self._start_box)
 
     def _creeps(
         self,
@@ -334,59 +279,38 @@ class Quasistatic:
     ) -> bool:
         """True if nothing was moved, and the force has come above the strength of the hand all the same."""
         # With drag grains go on where no body moves.
-        if self._push.share > 0.0 or self.system.drag > 0.0:
+        if self._tries.share > 0.0 or self.system.drag > 0.0:
             return False
-        return self._push.too_much(
-            self._hand_force(contacts[0], self._measure(contacts[1], friction))
-        )
+        return self._tries.too_much(self._force_after(contacts, friction))
 
     def _stand_still(self, spent: int) -> Increment:
         """An increment in which nothing has changed, after ``spent`` force evaluations: one more tells how well it is relaxed."""
-        about, push = (self._moved, self._pulled, self._stopped), self._push
-        self._begin({}, None)
+        tries, self._tries = self._tries, Tries(self.system, {})
+        self._begin()
         assert self._relaxation is not None
         report = self._relaxation.run(1)
         unbalanced = np.hypot(*self._relaxation.forces()[:2])
         self._relaxation = None
         self._take_back()  # a prediction, too
-        self._moved, self._pulled, self._stopped = about
-        self._push = push
+        self._tries = tries
         if report.reason is StopReason.BUDGET:
             report = replace(report, reason=StopReason.ITERATION_LIMIT)
         self._last = np.zeros_like(self.packing.state)
         self._own_motion = np.zeros_like(self.packing.state[:2])
-        self._last_moved = self._moved
-        pairs, bodies = self._contacts = self.contacts()
-        self.latest = Increment(
-            moved=self._moved,
-            pulled=self._pulled,
-            stopped=self._stopped,
-            share=0.0,
-            hand_force=self._hand_force(pairs, self.reactions),
-            report=replace(report, iterations=spent + report.iterations),
-            reactions=self.reactions,
-            grain_contacts=pairs,
-            body_contacts=bodies,
-            unbalanced=unbalanced,
-        )
-        return self.latest
+        self._last_moved = tries.moved
+        self._contacts = self.contacts()
+        return self._observe(replace(report, iterations=spent + report.iterations), unbalanced)
+
+    def _force_after(
+        self,
+        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
+        friction: FrictionForces | None,
+    ) -> float:
+        """The hand's force after a try [k R]."""
+        return self._hand_force(contacts[0], self._measure(contacts[1], friction))
 
     def _hand_force(self, pairs: observables.GrainContacts, reactions: Floats) -> float:
-        """The hand's force along its pull [k R], the largest of those on several bodies; nan where it pulls at nothing."""
-        if self._pulled:
-            pushes = (self._push_on(name, reactions) for name in self._pulled)
-            return max(map(force_on_body, pushes, self._pulled.values()))
-        box, asked = self._start_box, self._box_towards(self._asked[1], self.system.solver.step)
-        if box is None or asked is None or self._asked[1] is None:
-            return math.nan
-        ends = [(box.width, asked.width), (box.height, asked.height), (box.shift, asked.shift)]
-        width, height, shift = (b - a if math.isfinite(a) else 0.0 for a, b in ends)
-        return force_on_box(pairs, box, (width, height, shift))
-
-    def _push_on(self, name: str, reactions: Floats) -> Point:
-        """The push of the grains on a body [k R]."""
-        fx, fy, _ = map(float, reactions[self.world.index(name)])
-        return fx, fy
+        return self._tries.hand_force(pairs, reactions, self._start_box)
 
     def _take_back(self) -> None:
         """Grains, cell and bodies as they were before the increment."""
@@ -441,21 +365,6 @@ class Quasistatic:
         self._contacts = self.contacts()
         self.reactions = observables.reactions(self._contacts[1], owner, self._placement)
 
-    def _box_towards(self, target: PeriodicBox | None, step: float) -> PeriodicBox | None:
-        """The periodic box at the start of the increment, and from there at most ``step`` [R] nearer to ``target``."""
-        old = self._start_box
-        if target is None or old is None:
-            return old
-
-        def towards(now: float, then: float) -> float:
-            return now + min(max(then - now, -step), step) if np.isfinite(now) else now
-
-        return PeriodicBox(
-            towards(old.width, target.width),
-            towards(old.height, target.height),
-            towards(old.shift, target.shift),
-        )
-
     def _squeeze(self, new: PeriodicBox | None) -> None:
         """Change the periodic box to ``new``, and the grains' places with it: all images of a grain go to those of one place."""
         old = self.packing.box
@@ -477,10 +386,10 @@ class Quasistatic:
         body that turned back has no reason to fly on.
         """
         before = sum(dx * dx + dy * dy for dx, dy in self._last_moved.values())
-        now = sum(dx * dx + dy * dy for dx, dy in self._moved.values())
+        now = sum(dx * dx + dy * dy for dx, dy in self._tries.moved.values())
         along = sum(
             dx * self._last_moved[name][0] + dy * self._last_moved[name][1]
-            for name, (dx, dy) in self._moved.items()
+            for name, (dx, dy) in self._tries.moved.items()
             if name in self._last_moved
         )
         if along <= 0.0:
@@ -507,20 +416,18 @@ class Quasistatic:
     def _observe(
         self,
         report: Report,
-        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
         unbalanced: Floats,
-        friction: FrictionForces | None,
+        friction: FrictionForces | None = None,
+        beyond_cone: float = 0.0,
     ) -> Increment:
-        pairs, bodies = contacts
-        self.reactions = self._measure(bodies, friction)
-        beyond = 0.0
-        if friction is not None and self.friction is not None:
-            beyond = friction.beyond_cone(self.friction.coefficient, pairs, bodies)
+        """The increment that has ended so, with contacts and reactions as they are now."""
+        assert self._contacts is not None
+        pairs, bodies = self._contacts
         self.latest = Increment(
-            moved=self._moved,
-            pulled=self._pulled,
-            stopped=self._stopped,
-            share=self._push.share,
+            moved=self._tries.moved,
+            pulled=self._tries.pulled,
+            stopped=self._tries.stopped,
+            share=self._tries.share,
             hand_force=self._hand_force(pairs, self.reactions),
             report=report,
             reactions=self.reactions,
@@ -528,7 +435,7 @@ class Quasistatic:
             body_contacts=bodies,
             unbalanced=unbalanced,
             friction=friction,
-            beyond_cone=beyond,
+            beyond_cone=beyond_cone,
         )
         return self.latest
 
