@@ -43,9 +43,10 @@ def test_a_wide_orifice_runs_empty_without_a_hand() -> None:
 
 def test_a_narrow_orifice_clogs_with_an_arch() -> None:
     session = hopper(orifice=2.2)
+    filled = session.frame().grains
     settle(session)
     frame = session.frame()
-    assert frame.grains > 40
+    assert frame.grains > filled // 3  # how many go before depends on the last bits
     assert any(notice.startswith("clogged") for notice in frame.notices)
     assert frame.highlight is not None
     arch = np.flatnonzero(frame.highlight)
