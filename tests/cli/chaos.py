@@ -11,7 +11,7 @@ Linux only, as it looks for processes in /proc. ``test_chaos.py`` does each of i
 | record, side by side                 | yes     | yes     | yes    | yes    | yes       |
 | replay, that also goes back          | yes     | yes     | yes    | yes    | yes       |
 | study, two processes                 | yes     | yes     | yes    | yes    | no        |
-| play                                 | no: tests/window, as it needs a screen          |
+| play, log and film                   | yes     | yes     | yes    | yes    | yes       |
 
 A full disk is a small file system of its own where this may mount one, else a limit to the size of files. Moments before the
 first sign of life, while Python itself starts, are left out. After each: no process is left; a table has whole rows, and of
@@ -36,7 +36,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,6 +46,7 @@ import numpy as np
 from core import files
 from core.errors import InputError
 from sandbox.cli import arguments
+from tests.cli import chaos_window
 
 REPOSITORY = Path(__file__).parents[2]
 PATIENCE = 300.0  # [s], of a machine that does other things too
@@ -63,7 +64,13 @@ WORKS = {
 }
 FULL = "full disk"
 FAULTS = ("SIGKILL", "SIGTERM", "SIGINT", "SIGHUP", FULL)
-CASES = [(w, f) for w in WORKS for f in FAULTS if (w, f) != ("study", FULL)]
+WINDOW = "window"
+CASES = [
+    (work, fault)
+    for work in (*WORKS, *([WINDOW] if chaos_window.possible else []))
+    for fault in FAULTS
+    if (work, fault) != ("study", FULL)
+]
 
 
 @dataclass(frozen=True)
@@ -125,6 +132,14 @@ def processes(token: str) -> list[int]:
     return found
 
 
+def wait_for_processes(token: str) -> None:
+    """Raise AssertionError if one does not end."""
+    end = time.monotonic() + PATIENCE
+    while processes(token):
+        assert time.monotonic() < end, f"processes {processes(token)} are left"
+        time.sleep(0.1)
+
+
 def strike(folder: Path, work: str, fault: str, moment: float, *, limited: bool) -> Left:
     """Begin ``work`` in ``folder``, and let the fault happen ``moment`` [s] after its first sign of life."""
     token = secrets.token_hex(8)
@@ -155,10 +170,7 @@ def strike(folder: Path, work: str, fault: str, moment: float, *, limited: bool)
     seconds = time.monotonic() - began
     _, rest = process.communicate(timeout=PATIENCE)
     said = (first + rest).decode(errors="replace").replace("\r", "\n")
-    limit_ = time.monotonic() + PATIENCE
-    while processes(token):
-        assert time.monotonic() < limit_, f"processes {processes(token)} are left"
-        time.sleep(0.1)
+    wait_for_processes(token)
     return Left(folder, work, fault, process.returncode, said, seconds)
 
 
@@ -275,10 +287,22 @@ def _tidy(folder: Path, film: str | None, *, killed: bool) -> None:
 
 def once(folder: Path, work: str, fault: str, moment: float) -> str:
     """One fault; what was left, in words. Raises AssertionError if that is not as it should be."""
+    if work == WINDOW:
+        return _once_in_a_window(folder, fault, moment)
     if fault != FULL:
         return look(strike(folder, work, fault, moment, limited=False))
     with small_disk(folder) as mounted:
         return look(strike(folder, work, fault, moment, limited=not mounted))
+
+
+def _once_in_a_window(folder: Path, fault: str, moment: float) -> str:
+    token = secrets.token_hex(8)
+    with small_disk(folder) if fault == FULL else nullcontext(enter_result=True) as mounted:
+        if not mounted:
+            return "not tried: nobody may mount a small disk"
+        words = chaos_window.once(folder, fault, moment, token)
+        wait_for_processes(token)
+        return words
 
 
 def main() -> int:
@@ -286,11 +310,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Stop the program at random moments.")
     parser.add_argument("--times", type=int, default=25)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--work", choices=[*WORKS, WINDOW], help="this one only")
     options = parser.parse_args()
     chance = random.Random(options.seed)
     bad = 0
+    cases = [case for case in CASES if options.work in (None, case[0])]
     for number in range(options.times):
-        work, fault = CASES[number % len(CASES)]
+        work, fault = cases[number % len(cases)]
         moment = chance.uniform(0.0, LONGEST)
         with tempfile.TemporaryDirectory() as folder:
             try:
