@@ -21,11 +21,12 @@ FILE = Path(__file__).with_name("tours.toml")
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What a person is asked to do; exactly one of these is set, ``by`` and ``below`` apart."""
+    """What a person is asked to do; exactly one of these is set, ``by``, ``or_event`` and ``below`` apart."""
 
     moved: str = ""  # a handle, from where it was
     by: float = 0.0  # at least so far [R]
     event: str = ""  # a kind of event since then
+    or_event: str = ""  # or another kind
     view: str = ""  # another way to look at the grains
     setting: str = ""  # a parameter has another value than before
     below: float = math.inf  # or one that is at most so large
@@ -92,7 +93,9 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
             for before, after in zip(then.handles, now.handles, strict=False)
         )
     if c.event:
-        return any(event[0] == c.event for event in set(now.events) - set(then.events))
+        return any(
+            event[0] in (c.event, c.or_event) for event in set(now.events) - set(then.events)
+        )
     if c.view:
         return now.view == c.view
     if c.setting:

@@ -63,6 +63,7 @@ def test_steps_speak_of_what_exists(scene: str, step: Step) -> None:
     )
     assert sum(bool(want) for want in wants) == 1
     assert not until.event or until.event in EVENTS
+    assert not until.or_event or until.or_event in EVENTS
     assert not until.view or until.view in VIEWS
     assert not until.setting or until.setting in values
     assert not until.moved or until.by > 0.0
@@ -83,6 +84,7 @@ def test_conditions() -> None:
     clog = replace(frame, events=(Event("clog", 3, 1.0, 1.0, "clogged"),))
     assert met(Condition(event="clog"), then, moment(clog))
     assert not met(Condition(event="arch"), then, moment(clog))
+    assert met(Condition(event="locked", or_event="clog"), then, moment(clog))
     assert not met(Condition(event="clog"), moment(clog), moment(clog)), "that was before"
     assert met(Condition(view="area"), then, moment(frame, "area"))
     other = replace(frame, settings={"friction": 0.2})

@@ -289,7 +289,8 @@ CLAIMS: Mapping[tuple[str, str], Mapping[str, Claim]] = {
     },
     ("gravity_hopper", "clog"): {
         "an arch carries what is above": lambda p: (
-            "clog" in p[MIXED].events and p[MIXED].frame.highlight is not None
+            not {"clog", "arch"}.isdisjoint(p[MIXED].events)
+            and p[MIXED].frame.highlight is not None
         ),
     },
 }
