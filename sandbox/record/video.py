@@ -7,6 +7,7 @@ file. What goes to a pipe or a device is made in the folder for temporary files,
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import tempfile
@@ -158,7 +159,9 @@ class VideoWriter:
         options = {".mp4": _MP4, ".webm": self._webm, ".gif": _LOSSLESS}[self.suffix]
         target = self._lossless if self.suffix == ".gif" else self._temporary
         self._claim(target)
-        # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead.
+        # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead. Those of its wrapper tell of broken
+        # pipes, if ffmpeg has not quite ended yet.
+        logging.getLogger("imageio_ffmpeg").setLevel(logging.ERROR)
         return imageio.v2.get_writer(
             target, format="FFMPEG", mode="I", fps=self.fps, ffmpeg_log_level="quiet", **options
         )
