@@ -159,8 +159,8 @@ class VideoWriter:
         options = {".mp4": _MP4, ".webm": self._webm, ".gif": _LOSSLESS}[self.suffix]
         target = self._lossless if self.suffix == ".gif" else self._temporary
         self._claim(target)
-        # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead. Those of its wrapper tell of broken
-        # pipes, if ffmpeg has not quite ended yet.
+        # ffmpeg's own messages are many lines long; _failed finds out what went wrong instead. Those of its wrapper tell of
+        # broken pipes, if ffmpeg has not quite ended yet.
         logging.getLogger("imageio_ffmpeg").setLevel(logging.ERROR)
         return imageio.v2.get_writer(
             target, format="FFMPEG", mode="I", fps=self.fps, ffmpeg_log_level="quiet", **options
