@@ -10,7 +10,9 @@ from __future__ import annotations
 import logging
 import os
 import subprocess
+import sys
 import tempfile
+import traceback
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
@@ -214,6 +216,7 @@ class VideoWriter:
         """
         reason = _why_not_writable(self.path.parent) or f"the encoder stopped ({_one_line(error)})"
         self.discard()
+        _let_go_of_pipes(error)
         kept = "; the earlier file was kept" if self.path.exists() else ""
         return InputError(f"cannot write {self.path}: {reason}{kept}")
 
@@ -221,6 +224,17 @@ class VideoWriter:
         self._release()
         for path in (self._temporary, self._lossless, self._palette):
             path.unlink(missing_ok=True)
+
+
+def _let_go_of_pipes(error: BaseException | None) -> None:
+    """Let those be closed whose encoder has died, and be quiet about it: from Python 3.14 on they complain, whenever that is."""
+    hook, sys.unraisablehook = sys.unraisablehook, lambda _: None
+    try:
+        while error is not None:
+            traceback.clear_frames(error.__traceback__)
+            error = error.__context__
+    finally:
+        sys.unraisablehook = hook
 
 
 def write_picture(path: Path, image: Image) -> None:
