@@ -19,7 +19,7 @@ pytestmark = [
 ]
 
 if sys.platform.startswith("linux"):
-    from tests.cli import chaos
+    from tests.cli import chaos, chaos_window
 
     ALWAYS = [("film", "SIGKILL"), ("film", "SIGTERM"), ("animation", chaos.FULL)]
     # With these every fault, and every kind of work, once; all pairs of them on demand.
@@ -42,6 +42,6 @@ def test_what_is_left(tmp_path: Path, work: str, fault: str) -> None:
 @pytest.mark.skipif("CHAOS" not in os.environ, reason="CHAOS is not set")
 @pytest.mark.parametrize(("work", "fault"), MORE)
 def test_what_is_left_at_any_moment(tmp_path: Path, work: str, fault: str) -> None:
-    if work == chaos.WINDOW and not chaos.chaos_window.possible:
+    if work == chaos.WINDOW and not chaos_window.possible:
         pytest.skip("no screen")
     chaos.once(tmp_path, work, fault, random.uniform(0.5, 4.0))
