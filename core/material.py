@@ -59,13 +59,15 @@ def from_paper(stiffness_ratio: ArrayLike, softness: ArrayLike) -> tuple[Floats,
     """(λ, μ) of the paper → (Poisson's ratio, contact stiffness C).
 
     λ = k_A/k_s (area over shape), μ = (k_A + k_s)/k (grain over contact).
-    Raises InputError unless both are positive.
+    C is infinite where λ μ is too small for float64. Raises InputError unless both are positive.
     """
     lam = np.asarray(stiffness_ratio, dtype=np.float64)
     mu = np.asarray(softness, dtype=np.float64)
     if not (np.all(lam > 0.0) and np.all(mu > 0.0)):
         raise InputError("the paper's λ and μ must both be greater than 0")
-    return (lam - 1.0) / (lam + 1.0), 2.0 + (lam + 1.0) ** 2 / (lam * mu)
+    with np.errstate(over="ignore", divide="ignore"):
+        stiffness = 2.0 + (lam + 1.0) ** 2 / (lam * mu)
+    return (lam - 1.0) / (lam + 1.0), stiffness
 
 
 def contact_stiffness_of(poisson_ratio: ArrayLike, softness: ArrayLike) -> Floats:

@@ -74,6 +74,7 @@ def test_stiffness_ratio_alone() -> None:
         ({"softness": 0.1, "contact_stiffness": 60.0}, "softness or contact_stiffness"),
         ({"stiffness_ratio": 0.001}, "between 0.01 and 100"),
         ({"stiffness_ratio": 100.0, "softness": 0.01}, "stiffer than 2000 k"),
+        ({"softness": 2.3e-308}, "stiffer than 2000 k"),  # beyond what a number can hold
     ],
 )
 def test_one_line_where_they_do_not_go_together(wrong: dict[str, object], says: str) -> None:
