@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pygame
 import pytest
 
-from sandbox.draw.text import Type
+from sandbox.draw.text import SMALL, Type
 from sandbox.draw.widgets.controls import (
+    PAD,
     Button,
     Choice,
     Heading,
@@ -19,11 +21,14 @@ from sandbox.draw.widgets.controls import (
     parts_of,
 )
 from sandbox.draw.widgets.look import Attention, draw_control
+from sandbox.draw.widgets.panel_frame import FOOT_LINES
 from sandbox.session.commands import Change, Command, Protocol, Reset
 from sandbox.window.panel.line_edit import Edit
-from sandbox.window.panel.parameters import Wishes
+from sandbox.window.panel.panel import Panel
+from sandbox.window.panel.parameters import ParameterSection, Wishes
 from sandbox.words import language, words
 from scenes import registry
+from tests.draw.frames import intruder_frame
 from tests.window.desk import Desk
 
 
@@ -36,11 +41,23 @@ def desk() -> Iterator[Desk]:
     place.app.close()
 
 
+def helps_of_scenes(panel: Panel) -> set[str]:
+    """What is said of parameters in every scene."""
+    frame, helps = intruder_frame(4), set()
+    for name in registry.names():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Wishes, "frame", replace(frame, scene=name))
+            for section in panel.sections:
+                if isinstance(section, ParameterSection):
+                    helps |= {control.help for control in section.controls()}  # type: ignore[union-attr]
+    return helps
+
+
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 3.0)], ids=str)
 def test_no_word_of_the_panel_is_cut_in_any_language(
     size: tuple[int, int], scale: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All sections, with the parameters of all scenes."""
+    """All sections, brush and a grain that is looked at too, with the parameters of all scenes."""
     parameters = {p.name: p for name in registry.names() for p in registry.get(name).parameters}
     monkeypatch.setattr(Wishes, "parameters", lambda _: list(parameters.values()))
     original, cut = Type.shortened, []
@@ -53,6 +70,8 @@ def test_no_word_of_the_panel_is_cut_in_any_language(
     desk = Desk(size, scale)
     with contextlib.closing(desk.app):
         desk.start()
+        desk.key(pygame.K_b)
+        desk.key(pygame.K_i)
         panel = desk.app.panel
         panel.folded.clear()
         if not panel.drawer.shown:
@@ -65,6 +84,11 @@ def test_no_word_of_the_panel_is_cut_in_any_language(
             for place in panel._places.all:
                 draw_control(desk.app.stage.renderer.painter(), place, Attention())
             assert cut == [], code
+            if scale == 1.0:  # help, at the foot
+                type_, room = desk.app.stage.renderer.type, panel.rect.width - 2 * round(PAD)
+                helps = {place.control.help for place in panel._places.all} | helps_of_scenes(panel)
+                long = [t for t in helps if len(type_.wrapped(t, SMALL, room)) > FOOT_LINES]
+                assert long == [], code
 
 
 def box(desk: Desk, name: str) -> pygame.Rect:

@@ -318,8 +318,9 @@ def _draw_fact(painter: Painter, fact: Fact, rect: pygame.Rect) -> None:
         value, rect.right, rect.centery, size=SMALL, bold=fact.strong, anchor="right"
     )
     room = shown_value.left - rect.left - round(8 * painter.scale)
-    title = type_.shortened(fact.title, SMALL, room)
-    painter.text(title, rect.left, rect.centery, size=SMALL, colour=soft)
+    size = type_.fitting(fact.title, SMALL, room)
+    title = type_.shortened(fact.title, size, room)
+    painter.text(title, rect.left, rect.centery, size=size, colour=soft)
 
 
 def _draw_note(painter: Painter, note: Note, rect: pygame.Rect) -> None:

@@ -11,12 +11,12 @@ from sandbox.draw.theme import Theme, channels
 from sandbox.draw.widgets.controls import PAD, Place, Places
 from sandbox.draw.widgets.look import Attention, draw_control
 
-FOOT_LINES = 3  # of help
+FOOT_LINES = 4  # of help, at most
 
 
 def foot_height(height: int, type_: Type) -> int:
     """What the help at the foot takes of a panel's height [px]: nothing of a low one."""
-    for lines in (FOOT_LINES, FOOT_LINES - 1):
+    for lines in range(FOOT_LINES, 1, -1):
         foot = lines * type_.height(SMALL) + round(16 * type_.scale)
         if height > 5 * foot:
             return foot
