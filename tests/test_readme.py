@@ -27,7 +27,7 @@ def command(name: str) -> str:
 
 def test_the_two_commands_are_one_line_each() -> None:
     assert command("start").startswith("python3 -m venv ")
-    assert command("test").endswith("-m pytest")
+    assert command("test").endswith("-m pytest -n auto --dist worksteal")
 
 
 def test_the_first_command_can_be_run_with_and_without_a_screen() -> None:
