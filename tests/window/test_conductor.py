@@ -119,7 +119,7 @@ def test_speed_is_a_limit_and_can_be_lifted() -> None:
     wait_until(lambda: sessions[0].increments == 5)
     assert time.perf_counter() - begun > 0.19
     conductor.set_speed(math.inf)
-    wait_until(lambda: sessions[0].increments > 100, 5.0)
+    wait_until(lambda: sessions[0].increments > 3000, 60.0)  # 150 s at the limit
     assert all(solver.stop() for solver in solvers)
 
 
