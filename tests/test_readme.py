@@ -73,3 +73,12 @@ def test_links_lead_somewhere(page: str) -> None:
     assert local
     for target in local:
         assert (path.parent / target).exists(), target
+
+
+def test_every_test_in_the_table_of_faults_is_there() -> None:
+    text = (REPOSITORY / "tests" / "README.md").read_text(encoding="utf-8")
+    named = re.findall(r"`([a-z_/]+\.py)::(test_\w+)`", text)
+    assert len(named) > 30
+    for file, name in named:
+        source = (REPOSITORY / "tests" / file).read_text(encoding="utf-8")
+        assert f"def {name}(" in source, f"{file}::{name}"
