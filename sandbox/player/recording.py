@@ -98,6 +98,7 @@ def _pane(
         "notices": [[texts.number(said) for said in kept.notices] for kept in moments],
         "stroke": writer.block(stroke[:, None], _step(stroke)),
         "force": writer.block(force[:, None], _step(force)),
+        "counts": _counts(force),
         "events": [_event(event, increments) for event in last.events],
     }
 
@@ -169,7 +170,14 @@ def _finite(values: Floats) -> Floats:
 
 
 def _step(values: Floats) -> float:
+    if _counts(values):
+        return 1.0
     return max(float(np.ptp(values)), 1e-6) / CURVE_STEPS
+
+
+def _counts(values: Floats) -> bool:
+    """Do they count something? A curve of nothing but zeros is a force that was none."""
+    return bool((values == np.rint(values)).all() and values.any())
 
 
 def _number(value: float) -> float:

@@ -39,6 +39,7 @@ function makeEvents() {
   $("events-part").hidden = !all.length;
   $("marks").replaceChildren();
   $("events").replaceChildren();
+  const marked = [];
   for (const event of all) {
     const whose = run.panes.length > 1 ? `${say(run.panes[event.pane].title)} · ` : "";
     const text = `${whose}${word("increment", { increment: event.increment })}: ${say(event.text)}`;
@@ -46,7 +47,10 @@ function makeEvents() {
     const mark = element("button", { type: "button", className: "mark", tabIndex: -1, title: text, onclick: choose }, shapeOfEvent(event.kind));
     mark.setAttribute("aria-hidden", "true"); // the list says the same, and is on the way of Tab
     mark.style.left = `${(100 * event.moment) / Math.max(last(), 1)}%`;
-    $("marks").append(mark);
+    if (marked.every(([kind, moment]) => kind !== event.kind || event.moment - moment > 0.012 * last())) {
+      marked.push([event.kind, event.moment]); // of many that lie on one another the first; the list has all
+      $("marks").append(mark);
+    }
     $("events").append(element("li", {}, element("button", { type: "button", onclick: choose }, shapeOfEvent(event.kind), element("span", { textContent: text }))));
   }
 }

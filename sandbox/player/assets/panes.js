@@ -46,6 +46,7 @@ function arrange() {
   }
   for (const { bounds } of run.panes) cell = Math.max(cell, best * (bounds[3] - bounds[1]) + 20);
   stage.style.setProperty("--columns", columns);
+  stage.dataset.columns = columns;
   stage.style.setProperty("--lines", linesOf(wide / columns));
   stage.style.setProperty("--cell", free ? `${Math.round(cell)}px` : "auto");
   const ratio = devicePixelRatio || 1;
@@ -65,7 +66,7 @@ function linesOf(width) {
   const texts = run.panes.flatMap((pane) => pane.events.map((event) => say(event.text)));
   for (const pane of run.panes) for (const some of pane.notices) texts.push(some.map((text) => say(run.texts[text])).join(" · "));
   const longest = Math.max(0, ...texts.map((text) => text.length));
-  return Math.min(Math.ceil((longest * 8) / (width - 20)), 4);
+  return Math.min(Math.ceil((longest * 8) / (width - 20)), 5);
 }
 
 function draw() {
@@ -90,13 +91,20 @@ function forceOf(pane) {
   return `${number(value, pane.digits)} ${unit}`.trim();
 }
 
+// As many as tell hundredths of the curve's spread, but no show of rounding noise.
+function digitsOf(pane) {
+  if (pane.counts) return 0;
+  const spread = pane.force.reduce((a, b) => Math.max(a, b)) - pane.force.reduce((a, b) => Math.min(a, b));
+  return decimalsFor(Math.max(spread, 0.01)) + 2;
+}
+
 function tellPanes() {
   const levels = ["good", "working", "bad"];
   for (const pane of run.panes) {
-    pane.digits ??= decimalsFor(Math.max(...pane.force) - Math.min(...pane.force)) + 2;
-    const out = pane.out[state.moment];
+    pane.digits ??= digitsOf(pane);
+    const out = pane.out[state.moment] ? word("grains_out", { count: pane.out[state.moment] }) : "";
     setText(pane.nodes.name, say(pane.title));
-    setText(pane.nodes.value, forceOf(pane) + (out ? ` · ${word("grains_out", { count: out })}` : ""));
+    setText(pane.nodes.value, (pane.counts ? [out] : [forceOf(pane), out]).filter(Boolean).join(" · "));
     setText(pane.nodes.said, say(run.texts[pane.state[state.moment]]));
     pane.nodes.said.title = pane.nodes.said.textContent;
     pane.nodes.lamp.className = `lamp ${levels[pane.level[state.moment]]}`;

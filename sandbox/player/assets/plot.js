@@ -133,7 +133,7 @@ class Plot {
     g.setLineDash([]);
     g.textAlign = "left";
     g.fillStyle = css(theme.soft_text);
-    const text = word("hand_limit", { strength: number(run.limit, decimalsFor(100 * run.limit)) });
+    const text = word("hand_limit", { strength: short(run.limit) });
     g.fillText(text, left + 6 * s, y < 3.4 * letters ? y + 0.8 * letters : y - 0.8 * letters);
   }
 

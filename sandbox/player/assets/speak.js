@@ -21,6 +21,11 @@ function number(value, decimals) {
   return text.replace("-", "−").replace(".", run.words[language].decimal);
 }
 
+// A number as short as it can be told.
+function short(value) {
+  return number(value, (String(Number(value.toPrecision(4))).split(".")[1] ?? "").length);
+}
+
 // As many digits as tell values apart that differ by a hundredth of the spread.
 function decimalsFor(spread) {
   if (!(spread > 0)) return 0;
