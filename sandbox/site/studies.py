@@ -29,7 +29,7 @@ def require_markdown() -> None:
 def found() -> dict[str, Path]:
     """Which studies there are, by name; nothing where they were left out."""
     here = Path(__file__).parent
-    places = (here / "studies", here.parents[1] / "assets" / "studies")
+    places = (here / "results", here.parents[1] / "assets" / "studies")
     folder = next((place for place in places if place.is_dir()), None)
     if folder is None:
         return {}
