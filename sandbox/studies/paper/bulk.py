@@ -157,7 +157,8 @@ def _over_lambdas(
         for seed in common:
             values = np.array([rows[lam][seed] for lam in there])
             y = np.log(values) if exponent else values
-            slopes.append(float(np.polyfit(np.log(there), y, 1)[0]))
+            # Differences, so that the slope of what is all alike is zero, and not how a library rounds.
+            slopes.append(float(np.polyfit(np.log(there), y - y[0], 1)[0]))
         return mean_of(
             Measured.of("slope", "", slopes),
             "; ".join(str(Measured.of(label(lam), "", list(rows[lam].values()))) for lam in there),
