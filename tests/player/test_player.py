@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import signal
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -269,4 +270,20 @@ def test_record_writes_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     head, _ = recorded(out.read_text(encoding="utf-8"))
     assert head["increments"] == [0, 2, 4, 6]
     assert cli.main(["record", "grain_row", "--out", str(tmp_path / "run.htm"), "--view", "x"]) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["run.html"]
+
+
+def test_ctrl_c_leaves_a_whole_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    add = Tape.add
+
+    def press(tape: Tape, frames: Sequence[Frame]) -> None:
+        add(tape, frames)
+        if tape.increments == 3:
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(Tape, "add", press)
+    out = tmp_path / "run.html"
+    assert cli.main(["record", "grain_row", "--out", str(out)]) == 130
+    head, _ = recorded(out.read_text(encoding="utf-8"))
+    assert head["increments"] == [0, 1, 2, 3]
     assert [path.name for path in tmp_path.iterdir()] == ["run.html"]
