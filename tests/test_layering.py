@@ -93,7 +93,7 @@ STUDY = "studies.common session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
     "studies.clogging studies.common site record player files session words scenes core",
-    "window": "window.solvers record player files draw lessons session words scenes core",
+    "window": "window.solvers sweep studies.common record player files draw lessons session words scenes core",
     "sweep": "studies.common record draw session scenes core",
     "window.solvers": "files session words scenes core",
     "notebook": "player draw session scenes core",

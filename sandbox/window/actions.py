@@ -55,6 +55,14 @@ class Actions:
         elif action is Action.HELP or (action is Action.BACK and self.stage.show_help):
             self.stage.show_help = not self.stage.show_help
             self.pages.help.scroll = 0
+        elif (
+            self.stage.show_explore and not self.stage.show_help and self.pages.explore.act(action)
+        ):
+            pass
+        elif action is Action.EXPLORE and not self.stage.show_help:
+            self.pages.open_explore()
+        elif self.stage.show_explore:
+            pass  # what is under the page hears nothing
         elif self.stage.show_help and (
             self.pages.help.act(action, round(60 * self.stage.renderer.scale))
             or self.stage.show_menu

@@ -161,6 +161,7 @@ class App:
         stage.running = False
         stage.mouse.release(stage.send)
         stage.sound.close()
+        self.pages.explore.explorer.stop()
         self.farewell = stage.recorder.close()
         pygame.display.quit()
         try:
@@ -180,6 +181,7 @@ class App:
             return
         stage.mouse.send_move(stage.send)
         now = time.perf_counter()
+        self.pages.explore.tick()
         if said := stage.panes.tick():
             stage.toast(said)
         snapshot = stage.panes.snapshot
@@ -206,7 +208,8 @@ class App:
         self._rate.renew(now, self._clock.get_fps())
         begun = time.perf_counter()
         preparing = snapshot.phase == "building" and snapshot.frame is None
-        self._splash = not self._warmup.ready or (preparing and not stage.show_menu)
+        page = stage.show_menu or stage.show_explore
+        self._splash = not self._warmup.ready or (preparing and not page)
         if self._splash:
             draw_splash(
                 renderer.surface,
@@ -217,7 +220,7 @@ class App:
                 seconds=now - self._begun,
             )
         else:
-            if not stage.show_menu:
+            if not page:
                 self._draw_run(snapshot, now)
             self.pages.draw()
         stage.screen.blit(renderer.surface, (0, 0))
@@ -255,7 +258,9 @@ class App:
 
     def _show_cursor(self) -> None:
         wanted = pygame.SYSTEM_CURSOR_ARROW
-        if self.stage.show_menu and not self.stage.show_help:
+        if self.stage.show_explore:
+            pass
+        elif self.stage.show_menu and not self.stage.show_help:
             wanted = self.pages.menu.cursor()
         elif not self.stage.show_help:
             own = (part.cursor() for part in self.stage.parts_now())

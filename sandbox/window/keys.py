@@ -54,6 +54,7 @@ class Action(enum.Enum):
     SOUND = enum.auto()
     EXPORT = enum.auto()
     SAVE = enum.auto()
+    EXPLORE = enum.auto()
 
 
 PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
@@ -94,6 +95,7 @@ _SIGNS = {
     "o": Action.SOUND,
     "e": Action.EXPORT,
     "w": Action.SAVE,
+    "x": Action.EXPLORE,
 }
 
 _KEYS = {

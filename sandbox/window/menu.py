@@ -11,6 +11,7 @@ import pygame
 from sandbox.draw.pages import menu_layout
 from sandbox.draw.pages.menu_layout import (
     DISCARD,
+    EXPLORE,
     FILE,
     KEYS,
     LANGUAGE,
@@ -42,7 +43,7 @@ ARROWS = {
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What a person picked: at most one of these. ``what`` is START, TAKE_UP, DISCARD, LANGUAGE, THEME or KEYS."""
+    """What a person picked: at most one of these. ``what`` is START, TAKE_UP, DISCARD, EXPLORE, LANGUAGE, THEME or KEYS."""
 
     scene: str | None = None
     packing: str | None = None
@@ -65,6 +66,7 @@ class Menu:
         )
         self._files: tuple[SceneHere, ...] = ()
         self._places: MenuLayout | None = None
+        self._scene = ""  # that the choice was on last
         self._pointed = ""  # what the mouse is over
         self._follow = False  # bring what is chosen into view with the next picture
 
@@ -80,6 +82,11 @@ class Menu:
         """Put the choice on a scene."""
         if scene in registry.names():
             self._go(SCENE + scene)
+
+    @property
+    def scene_chosen(self) -> str:
+        """The scene that the choice was on last; the first before any."""
+        return self._scene or self.scenes[0].name
 
     def contents(self, packing: str, theme: str) -> Contents:
         """What the menu offers, in the present language."""
@@ -109,6 +116,7 @@ class Menu:
             for name in self.packings
         ]
         chips += [
+            Chip(EXPLORE, words.EXPLORE),
             Chip(LANGUAGE, str(language.find("name"))),
             Chip(THEME, words.THEMES[theme]),
             Chip(KEYS, words.HELP_TITLE),
@@ -143,6 +151,7 @@ class Menu:
         self._pointed = self._at(place)
         if self._pointed and not self._pointed.startswith(TOUR):
             self.chosen = self._pointed
+            self._note_scene(self.chosen)
 
     def cursor(self) -> int:
         """The system cursor for where the mouse is."""
@@ -184,7 +193,12 @@ class Menu:
 
     def _go(self, name: str) -> None:
         self.chosen = name
+        self._note_scene(name)
         self._follow = True
+
+    def _note_scene(self, name: str) -> None:
+        if name.startswith(SCENE):
+            self._scene = name.removeprefix(SCENE)
 
     def _at(self, place: tuple[int, int]) -> str:
         return "" if self._places is None else self._places.at(place, self.scroll)
@@ -206,4 +220,5 @@ class Menu:
                 return Choice(tour=rest)
             case menu_layout.PACKING:
                 return Choice(packing=rest)
-        return Choice(what=name if name in (START, TAKE_UP, DISCARD, LANGUAGE, THEME, KEYS) else "")
+        whats = (START, TAKE_UP, DISCARD, EXPLORE, LANGUAGE, THEME, KEYS)
+        return Choice(what=name if name in whats else "")

@@ -9,18 +9,25 @@ import pygame
 
 from core.errors import InputError
 from sandbox.draw.pages.help_page import HelpLayout, draw_help
-from sandbox.draw.pages.menu_layout import DISCARD, KEYS, LANGUAGE, START, TAKE_UP, THEME
+from sandbox.draw.pages.menu_layout import DISCARD, EXPLORE, KEYS, LANGUAGE, START, TAKE_UP, THEME
 from sandbox.draw.painter import Painter
 from sandbox.files import autosave
+from sandbox.window.explore.page import ExplorePage
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
 from sandbox.window.menu import Choice, Menu
 from sandbox.window.stage import Stage
 from sandbox.words import words
+from scenes import registry
 from scenes.text import message
 
 START_SCENE = "hopper"  # whose tour begins with three packings side by side
-ACTIONS = {KEYS: Action.HELP, LANGUAGE: Action.LANGUAGE, THEME: Action.THEME}
+ACTIONS = {
+    EXPLORE: Action.EXPLORE,
+    KEYS: Action.HELP,
+    LANGUAGE: Action.LANGUAGE,
+    THEME: Action.THEME,
+}
 MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0  # [s]
 
 
@@ -56,6 +63,7 @@ class Pages:
         self.stage, self.guide = stage, guide
         self.menu = Menu()
         self.help = HelpPage()
+        self.explore = ExplorePage(stage)
         self._left: list[autosave.Leftover] = []
         self._looked = False
         stage.at_new_scene(lambda: self.menu.choose(stage.panes.scene))
@@ -74,6 +82,9 @@ class Pages:
         """The mouse, while a page is shown. What it asks for, if that is an action."""
         if self.stage.show_help:
             self.stage.show_help = event.type != pygame.MOUSEBUTTONDOWN
+        elif self.stage.show_explore:
+            if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+                self.explore.click(event.pos)
         elif self.stage.show_menu and event.type == pygame.MOUSEMOTION:
             self.menu.hover(event.pos)
         elif self.stage.show_menu and event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
@@ -83,6 +94,8 @@ class Pages:
     def handle(self, event: pygame.event.Event) -> bool:
         """Tab in the menu, and the wheel; True if the event was that."""
         stage = self.stage
+        if stage.show_explore and not stage.show_help:
+            return False
         if stage.show_menu and not stage.show_help and self.menu.handle(event):
             return True
         if event.type != pygame.MOUSEWHEEL or not (stage.show_menu or stage.show_help):
@@ -94,10 +107,23 @@ class Pages:
     def draw(self) -> None:
         """What is shown of them; nothing if neither is."""
         stage = self.stage
-        if stage.show_menu:
+        if stage.show_explore:
+            self.explore.draw(stage.renderer.painter())
+        elif stage.show_menu:
             self.menu.draw(stage.renderer.painter(), stage.panes.packing, stage.notices.latest)
         if stage.show_help:
             self.help.draw(stage.renderer.painter())
+
+    def open_explore(self) -> None:
+        """The map, of what runs or of what is chosen in the menu."""
+        panes, chosen = self.stage.panes, self.menu.scene_chosen
+        frame = panes.snapshot.frame
+        if self.stage.show_menu and chosen:
+            scene = registry.get(chosen)
+            packing = panes.packing if panes.packing in scene.packings else scene.packings[0]
+            self.explore.open(chosen, packing, {})
+        elif not self.stage.show_menu and frame is not None:
+            self.explore.open(frame.scene, frame.packing, frame.settings)
 
     def _look_for_leftovers(self) -> None:
         """Offer the latest autosave in the menu, if there is one."""

@@ -36,6 +36,7 @@ class Stage:
         self.running = True
         self.show_menu = False
         self.show_help = False
+        self.show_explore = False
         self.dirty = True  # is there something new to draw?
         self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.mouse = Mouse()
@@ -60,9 +61,13 @@ class Stage:
         scene: str,
         settings: Mapping[str, object] | None = None,
         packings: Sequence[str] = (),
+        seed: int | None = None,
     ) -> None:
-        """Run a scene, with these packings side by side if any are named. Raises InputError for what does not exist."""
-        self.panes.start(scene, settings, packings)
+        """Run a scene, with these packings side by side if any are named; without a seed with that of the scene before.
+
+        Raises InputError for what does not exist.
+        """
+        self.panes.start(scene, settings, packings, seed)
         self._begin()
 
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
@@ -83,7 +88,7 @@ class Stage:
         self.renderer.forget()
         for forget in self._forget:
             forget()
-        self.show_menu = self.show_help = False
+        self.show_menu = self.show_help = self.show_explore = False
         self.dirty = True
 
     def send(self, command: Command) -> None:
@@ -119,5 +124,6 @@ class Stage:
 
     def parts_now(self) -> list[Part]:
         """The parts that are there now: none under a page."""
-        hidden = self.show_menu or self.show_help or self.panes.snapshot.frame is None
+        pages = self.show_menu or self.show_help or self.show_explore
+        hidden = pages or self.panes.snapshot.frame is None
         return [] if hidden else self.parts

@@ -17,7 +17,7 @@ from sandbox.words import words
 START = "start"  # names of what can be pressed
 TAKE_UP, DISCARD = "resume", "discard"
 SCENE, FILE, TOUR, PACKING = "scene/", "file/", "tour/", "packing/"
-LANGUAGE, THEME, KEYS = "language", "theme", "keys"
+LANGUAGE, THEME, KEYS, EXPLORE = "language", "theme", "keys", "explore"
 
 CARD = 380.0  # least width of a card at scale 1 [px]
 MOST_COLUMNS = 4

@@ -29,8 +29,12 @@ class Pool:
     def __enter__(self) -> Pool:
         return self
 
-    def __exit__(self, *error: object) -> None:
+    def stop(self) -> None:
+        """Tell the processes that what they do is not wanted any more; from any thread."""
         self._stop.set()
+
+    def __exit__(self, *error: object) -> None:
+        self.stop()
         if self._executor is not None:
             with deferred():
                 self._executor.shutdown(wait=True, cancel_futures=True)

@@ -130,17 +130,22 @@ class Panes:
     # Beginning and ending.
 
     def start(
-        self, scene: str, settings: Mapping[str, object] | None = None, packings: Sequence[str] = ()
+        self,
+        scene: str,
+        settings: Mapping[str, object] | None = None,
+        packings: Sequence[str] = (),
+        seed: int | None = None,
     ) -> None:
-        """Leave what runs and build a scene, with these packings side by side if any are named.
+        """Leave what runs and build a scene, with these packings side by side if any are named; without a seed with the last one.
 
         Raises InputError for what does not exist.
         """
+        seed = self.seed if seed is None else seed
         given = dict(settings or {})
         kinds = tuple(packings) or (self.packing,)
-        sessions = [self._make(scene, kind, self.seed, dict(given)) for kind in kinds]
+        sessions = [self._make(scene, kind, seed, dict(given)) for kind in kinds]
         first = self.packing if self.packing in kinds else kinds[0]
-        self._begin(Wanted(scene, first, self.seed, given), kinds, sessions)
+        self._begin(Wanted(scene, first, seed, given), kinds, sessions)
 
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
         """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""

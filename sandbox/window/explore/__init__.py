@@ -1,0 +1,1 @@
+"""Explore: a map over two parameters that fills while one looks."""
