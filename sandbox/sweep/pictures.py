@@ -24,6 +24,7 @@ MARKS = "osD^vP"
 PANEL = (4.8, 3.9)  # of one pair of axes [inch]
 MOST_PANELS = 6
 MOST_LINES = len(OTHERS)
+ASIDE = 0.008  # of the axis
 LEAST_AVALANCHES = 5  # for a line of survival
 # Widths of an interval from which on a cell is hatched: fifty runs at one half are at 0.27.
 UNSURE = ((0.5, "////"), (0.3, "//"))
@@ -89,11 +90,14 @@ def draw_all(request: Request, cells: Sequence[Cell], folder: Path) -> list[str]
 
 def along(axes: Any, request: Request, lines: Sequence[Group]) -> None:
     """Probability along the first axis, with Wilson's intervals, a line a group."""
+    span = float(max(request.axes[0].values)) - float(min(request.axes[0].values))
     for place, (name, some) in enumerate(lines):
         known = [(float(c.values[0]), c.stopped) for c in some if c.stopped is not None]
         if not known:
             continue
-        x = [at for at, _ in known]
+        # Lines stand a little aside of each other, so that none hides another's interval.
+        aside = ASIDE * span * (place - 0.5 * (len(lines) - 1))
+        x = [at + aside for at, _ in known]
         values = np.array([share.value for _, share in known])
         low, high = np.array([share.interval() for _, share in known]).T
         colour = _colour(some[0] if len(request.axes) == 1 else None, place)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pygame
 import pytest
 
+from sandbox.window.explore.explorer import Explorer
 from tests.window.desk import Desk
 
 SPECIAL = (
@@ -31,6 +32,7 @@ SIGNS = " 0123456789abcefhiklmnprstvyz-,.[]+"  # no film, no sound, no scene fil
 @pytest.fixture(autouse=True)
 def own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Explorer, "begin", lambda *_: None)  # no processes by chance
 
 
 def some_key(chance: random.Random, desk: Desk) -> None:

@@ -195,8 +195,8 @@ def _draw_cell(painter: Painter, cell: Field | None, rect: pygame.Rect, runs: in
     label.center = rect.center
     painter.fill(label, ground)
     painter.text(text, *rect.center, anchor="centre", bold=True, colour=ink)
-    if cell.runs < runs and rect.height > 2 * tall + 8:
-        under = rect.centery + tall
+    under = rect.centery + tall
+    if cell.runs < runs and under + tall // 2 < rect.bottom:
         painter.text(
             f"{cell.runs}/{runs}", rect.centerx, under, size=SMALL, anchor="centre", colour=ink
         )
