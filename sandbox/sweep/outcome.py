@@ -107,8 +107,8 @@ class Watch:
 
     @property
     def at_rest(self) -> bool:
-        """Have they come to rest?"""
-        return self.resting >= AT_REST
+        """Have they come to rest? Under a piston they never go by themselves, so there it says nothing."""
+        return self.falls and self.resting >= AT_REST
 
     @property
     def empty(self) -> bool:

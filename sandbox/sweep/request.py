@@ -20,7 +20,7 @@ from scenes import registry
 from scenes.parameter import LARGEST_SEED, Value, check_seed, shown
 from scenes.scene import Scene
 
-DATA_VERSION = 1  # of what a run writes down
+DATA_VERSION = 2  # of what a run writes down
 MOST_RUNS = 1_000_000
 MOST_CELLS = 10_000
 LOCKED, CLOG, EMPTY = "locked", "clog", "empty"

@@ -101,6 +101,16 @@ def test_a_hand_locks_or_runs_through() -> None:
     settings = {"grains": 24, "width": 8.0, "angle": 20.0, "stroke": 2.0, "orifice": 1.0}
     request = ask("hopper", ["hand_strength=0.5,machine"], "regular", "1", settings)
     assert [carry_out(job).run["outcome"] for job in request.jobs()] == ["locked", "ran through"]
+    flowing = ask(
+        "hopper",
+        ["step=0.1"],
+        "regular",
+        "1",
+        {**settings, "friction": 0.0, "stroke": 2.5, "orifice": 3.0},
+    )
+    run = carry_out(flowing.job(1)).run
+    assert int(run["out"]) > 0
+    assert (run["outcome"], run["left"]) == ("ran through", 24 - int(run["out"]))
 
 
 # Tables.

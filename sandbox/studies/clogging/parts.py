@@ -18,7 +18,7 @@ STILL = {"shake": 0.0}
 SINGLE = {**STILL, "size_ratio": 1.0, "angle": 56.0, "friction": 0.5}
 # --quick: smaller hoppers. What they say of the large ones is little; that the study works, all.
 QUICK = {"grains": 60, "width": 14.0}
-QUICK_SEEDS = 6
+QUICK_SEEDS = 20
 USUAL_ORIFICE = 3.0
 USUAL_HAND = 8.0
 
