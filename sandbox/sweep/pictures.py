@@ -25,7 +25,7 @@ PANEL = (4.8, 3.9)  # of one pair of axes [inch]
 MOST_PANELS = 6
 MOST_LINES = len(OTHERS)
 ASIDE = 0.008  # of the axis
-LEAST_AVALANCHES = 5  # for a line of survival
+LEAST_CLOGS = 5  # for a line of survival
 # Widths of an interval from which on a cell is hatched: fifty runs at one half are at 0.27.
 UNSURE = ((0.5, "////"), (0.3, "//"))
 STOPS = "probability that the grains stop"
@@ -70,20 +70,20 @@ def draw_all(request: Request, cells: Sequence[Cell], folder: Path) -> list[str]
     if request.axes and any(cell.stopped for cell in cells):
         lines = View(request, cells, 1).groups()
         if len(lines) <= MOST_LINES:
-            _save([("", lambda axes: along(axes, request, lines))], folder / "probability.png")
+            save([("", lambda axes: along(axes, request, lines))], folder / "probability.png")
             made.append("probability.png")
     if len(request.axes) >= 2:
         groups = View(request, cells, 2).groups()[:MOST_PANELS]
         panels = [(name, _mapper(request, some)) for name, some in groups]
-        _save(panels, folder / "map.png")
+        save(panels, folder / "map.png")
         made.append("map.png")
     falling = [
         (name, some)
         for name, some in View(request, cells, 1 if request.axes else 0).groups()
-        if any(len(cell.avalanches) >= LEAST_AVALANCHES for cell in some)
+        if any(cell.clogs >= LEAST_CLOGS for cell in some)
     ][:MOST_PANELS]
     if falling:
-        _save([(name, _faller(request, some)) for name, some in falling], folder / "avalanches.png")
+        save([(name, _faller(request, some)) for name, some in falling], folder / "avalanches.png")
         made.append("avalanches.png")
     return made
 
@@ -150,7 +150,7 @@ def heat_map(axes: Any, request: Request, some: Sequence[Cell]) -> None:
 
 def survive(axes: Any, request: Request, some: Sequence[Cell]) -> None:
     """Share of avalanches that grow larger than a size, and exponentials of the same hazard, a line a cell."""
-    enough = [cell for cell in some if len(cell.avalanches) >= LEAST_AVALANCHES]
+    enough = [cell for cell in some if cell.clogs >= LEAST_CLOGS]
     # The same colour for the same value in all panels.
     values = request.axes[0].values if request.axes else ()
     step = max(-(-len(values) // MOST_LINES), 1)
@@ -195,7 +195,8 @@ def _colour(cell: Cell | None, place: int) -> str:
     return f"#{number:06X}"
 
 
-def _save(panels: Sequence[tuple[str, Callable[[Any], None]]], path: Path) -> None:
+def save(panels: Sequence[tuple[str, Callable[[Any], None]]], path: Path) -> None:
+    """Panels, each a title and what draws it, as one PNG. Raises InputError if it cannot be written."""
     import matplotlib as mpl
 
     picture = io.BytesIO()

@@ -44,6 +44,11 @@ class Cell:
         return np.array([float(row[name]) for row in self.runs if row[name] != ""])
 
     @property
+    def clogs(self) -> int:
+        """Avalanches that ended in one."""
+        return sum(row["ended"] == CLOGGED for row in self.avalanches)
+
+    @property
     def sizes(self) -> tuple[Floats, NDArray[np.bool_]]:
         """Sizes of avalanches (A,), and whether a clog ended each, (A,): others are lower bounds."""
         sizes = np.array([float(row["size"]) for row in self.avalanches])

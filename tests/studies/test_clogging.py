@@ -86,5 +86,7 @@ def test_the_study_judges_what_its_sweeps_hold(
     assert "| all |" in text
     assert all(part.title in text for part in parts.PARTS)
     assert "holds" in said
+    assert (tmp_path / "hazard.png").read_bytes().startswith(b"\x89PNG")
+    assert "(hazard.png)" in text
     assert cli.main(["study", "clogging", "--out", str(tmp_path)]) == 2
     assert "a quick one perhaps" in capsys.readouterr().err

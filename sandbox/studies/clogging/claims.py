@@ -107,7 +107,7 @@ def _sizes(found: Found) -> list[Check]:
     for name, those in some:
         estimate = pooled_memory(those)
         if estimate is not None:
-            clogs = sum(int(cell.sizes[1].sum()) for cell in those)
+            clogs = sum(cell.clogs for cell in those)
             quantity = f"logarithm of the hazard beyond the mean size over that up to it, {name}, {clogs} clogs"
             seeds = tuple(range(FIRST, FIRST + len(those[0].runs)))
             demand = Demand(-bound, bound)

@@ -113,7 +113,7 @@ def falling(cells: Sequence[Cell]) -> Student | None:
 
 def pooled_memory(cells: Sequence[Cell]) -> Student | None:
     """``sizes.memory`` over all cells with enough clogs, weighted by its errors."""
-    each = [memory(*c.sizes) for c in cells if int(c.sizes[1].sum()) >= LEAST_CLOGS]
+    each = [memory(*c.sizes) for c in cells if c.clogs >= LEAST_CLOGS]
     known = [one for one in each if one is not None]
     if not known:
         return None

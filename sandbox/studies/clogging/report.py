@@ -13,6 +13,7 @@ from sandbox.studies.classics.case import Check
 from sandbox.studies.classics.report import cell as escaped
 from sandbox.studies.classics.report import must, value
 from sandbox.studies.clogging.claims import Claim, Found
+from sandbox.studies.clogging.figure import FIGURE
 from sandbox.studies.clogging.parts import FIRST, PARTS, SAME, SHARES, STRENGTHS, Part
 from sandbox.studies.common.folder import finite
 from sandbox.studies.common.statistics import CONFIDENCE, FAILS, HOLDS, OPEN
@@ -42,6 +43,8 @@ def as_markdown(verdicts: Sequence[Verdict], found: Found, about: Mapping[str, A
     ]
     for claim in dict.fromkeys(claim for claim, _, _, _ in verdicts):
         lines += ["", f"## {claim.title}", "", f"{claim.source}.", "", f"Limits: {claim.limits}."]
+        if claim.name == "decay" and about.get("hazard"):
+            lines += ["", f"![Hazard of a clog against the width, with both forms]({FIGURE})"]
         lines += ["", "| measured | expected | must be | verdict |", "| --- | --- | --- | --- |"]
         mine = [verdict for verdict in verdicts if verdict[0] is claim]
         lines += [

@@ -10,7 +10,8 @@ from pathlib import Path
 from core.errors import InputError, did_you_mean
 from sandbox.studies.classics.case import judged
 from sandbox.studies.clogging.claims import CLAIMS, Found
-from sandbox.studies.clogging.parts import PARTS, Part
+from sandbox.studies.clogging.figure import draw_hazard
+from sandbox.studies.clogging.parts import PARTS, WIDTHS, Part
 from sandbox.studies.clogging.report import Verdict, as_json, as_markdown
 from sandbox.studies.common.folder import machine, write_text
 from sandbox.sweep.page import write_page
@@ -77,6 +78,7 @@ def study(folder: Path, ways: Ways, parts: Sequence[Part] = PARTS, *, quick: boo
         return Study((), len(outcomes), failed, interrupted=True)
     verdicts = judge(found)
     about = {"quick": quick, "seconds": round(time.perf_counter() - began, 1), **machine()}
+    about["hazard"] = draw_hazard(found[WIDTHS.name], folder)
     write_text(folder / "results.json", as_json(verdicts, found, about))
     write_text(folder / "clogging.md", as_markdown(verdicts, found, about))
     return Study(tuple(verdicts), len(outcomes), failed, interrupted=False)
