@@ -70,7 +70,7 @@ def test_the_study_judges_what_its_sweeps_hold(
 ) -> None:
     monkeypatch.setattr(sweep, "carry_out", drain)
     monkeypatch.setattr(study, "draw_all", lambda *_: [])
-    monkeypatch.setattr(parts, "QUICK_SEEDS", 6)
+    monkeypatch.setattr(parts, "QUICK_SEEDS", 12)
     words = ["study", "clogging", "--quick", "--out", str(tmp_path)]
     assert cli.main([*words, "--only", "widths", "wide"]) == 0
     assert cli.main(words) == 0

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from sandbox.studies.classics.case import Check
 from sandbox.studies.clogging.fits import (
+    ON_THE_GATE,
     Falls,
+    begun,
     divergence,
     exponential,
     falling,
@@ -107,7 +109,7 @@ def _sizes(found: Found) -> list[Check]:
     for name, those in some:
         estimate = pooled_memory(those)
         if estimate is not None:
-            clogs = sum(cell.clogs for cell in those)
+            clogs = sum(int(begun(cell)[1].sum()) for cell in those)
             quantity = f"logarithm of the hazard beyond the mean size over that up to it, {name}, {clogs} clogs"
             seeds = tuple(range(FIRST, FIRST + len(those[0].runs)))
             demand = Demand(-bound, bound)
@@ -117,7 +119,7 @@ def _sizes(found: Found) -> list[Check]:
 
 def _decay(found: Found) -> list[Check]:
     """How the hazard falls with the width, and which of the two forms the avalanches prefer."""
-    cells = [cell for cell in found[WIDTHS.name] if len(cell.avalanches)]
+    cells = [cell for cell in found[WIDTHS.name] if len(begun(cell)[0])]
     seeds = tuple(range(FIRST, FIRST + max((len(c.runs) for c in cells), default=0)))
     checks = []
     slope = falling(cells)
@@ -212,8 +214,9 @@ CLAIMS = (
         "(b) Avalanche sizes are exponential at every opening",
         "Pérez, arXiv:0705.1744; Janda et al., doi:10.1209/0295-5075/84/44002",
         _sizes,
-        "a drain of 200 grains that runs empty says only that its avalanche was no smaller; a first avalanche starts from a "
-        "packing that was made, not from one that had clogged. Drains that never start are none of these",
+        "a drain of 200 grains that runs empty says only that its avalanche was no smaller. A first avalanche starts from a "
+        f"packing that was made, not from one that had clogged: only those of more than {ON_THE_GATE} grains, which may have "
+        "lain on the gate, are counted, and from there on",
     ),
     Claim(
         "decay",
@@ -227,7 +230,8 @@ CLAIMS = (
         "(d) Softer grains clog less",
         "Hong, Kohne, Morrell, Wang and Weeks, PRE 96, 062605; Tao et al., PRE 104, 044909",
         _softness,
-        "softness is the weight of a grain over its stiffness; momentum, which their drops have, is none here",
+        "softness is the weight of a grain over its stiffness; momentum, which their drops have, is none here. Clogs right "
+        "after the gate is gone are counted, too",
     ),
     Claim(
         "maps",

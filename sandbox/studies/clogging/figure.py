@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.draw.theme import AUXETIC, REGULAR
-from sandbox.studies.clogging.fits import Falls, divergence, exponential, falling
+from sandbox.studies.clogging.fits import Falls, begun, divergence, exponential, falling
 from sandbox.sweep.pictures import save
 from sandbox.sweep.sizes import hazard
 from sandbox.sweep.summary import Cell
@@ -20,7 +20,7 @@ INK = "#333333"
 
 def draw_hazard(cells: Sequence[Cell], folder: Path) -> bool:
     """Write ``FIGURE`` into the folder; False where too few clogged. Raises InputError if it cannot be written."""
-    some = [cell for cell in cells if cell.avalanches]
+    some = [cell for cell in cells if len(begun(cell)[0])]
     if falling(some) is None:
         return False
     save([("", lambda axes: _draw(axes, some))], folder / FIGURE)
@@ -29,7 +29,7 @@ def draw_hazard(cells: Sequence[Cell], folder: Path) -> bool:
 
 def _draw(axes: Any, cells: Sequence[Cell]) -> None:
     for cell in cells:
-        share = hazard(*cell.sizes)
+        share = hazard(*begun(cell))
         if share is None:
             continue
         low, high = share.interval()
@@ -50,5 +50,5 @@ def _draw(axes: Any, cells: Sequence[Cell]) -> None:
         axes.plot(w[q > 0.0], q[q > 0.0], dash, color=f"#{colour:06X}", label=label)
     axes.set_yscale("log")
     axes.set_ylim(bottom=3e-4, top=1.5)
-    axes.set(xlabel="orifice [diameters]", ylabel="clogs a grain that leaves, q")
+    axes.set(xlabel="orifice [diameters]", ylabel="clogs a grain that leaves a flow, q")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17))

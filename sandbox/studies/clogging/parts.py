@@ -54,8 +54,7 @@ WIDTHS = Part(
     ("orifice=2:4:0.25",),
     SINGLE,
     "regular",
-    60,
-    ("orifice=2:4:0.5",),
+    100,
 )
 WIDE = Part(
     "wide",
