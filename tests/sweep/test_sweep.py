@@ -164,8 +164,7 @@ def test_a_page_shows_the_cells_and_how_to_open_a_run_of_each(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     pytest.importorskip("matplotlib")
-    pytest.importorskip("pyarrow")
-    words = ["--vary", "fall=0.1,0.3", "--pictures", "--parquet", "--out", str(tmp_path)]
+    words = ["--vary", "fall=0.1,0.3", "--pictures", "--out", str(tmp_path)]
     assert cli.main(["sweep", *WORDS[:-2], *words]) == 0
     assert "index.html" in capsys.readouterr().out
     page = (tmp_path / "index.html").read_text()
@@ -175,10 +174,15 @@ def test_a_page_shows_the_cells_and_how_to_open_a_run_of_each(
     for name in re.findall(r'<img src="(.+?)"', page):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     assert page.count("<img") == 2  # three avalanches a cell are too few for the third
-    from pyarrow import parquet
 
+
+@pytest.mark.usefixtures("in_threads")
+def test_parquet_has_the_types_of_its_columns(tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    assert cli.main(["sweep", *WORDS, "--parquet", "--out", str(tmp_path)]) == 0
     table = parquet.read_table(tmp_path / "runs.parquet")
-    assert table.column("orifice").to_pylist() == [1.5, 1.5, 3.5, 3.5] * 3
+    assert table.column("orifice").to_pylist() == [1.5, 3.5] * 3
+    assert table.column("packing").to_pylist() == ["regular"] * 6
 
 
 @pytest.mark.usefixtures("in_threads")
