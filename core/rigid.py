@@ -31,6 +31,7 @@ HELD_MASS = 50.0  # [k · increment²] of a body in a hand, on a joint that give
 JOINT_FORCE = 40.0  # [k R]
 CLEAR = 1.0  # [R] what is further away is not touched in one increment
 SAME_POINT = 1e-9  # [R] what is closer than this is at the same place
+SAME_DIRECTION = 1e-12  # [rad] what turns by less goes straight on: that is rounding
 
 
 @dataclass
@@ -112,7 +113,7 @@ class RigidBody:
         for x0, y0, x1, y1, radius in self.segments:
             a, b = self.to_world([(x0, y0), (x1, y1)])
             edges.append(((a[0], a[1]), (b[0], b[1]), radius))
-        rows += _edges_and_vertices(edges)
+        rows += _edges_and_vertices(_straight(edges))
         for corners, radius in self.polygons:
             p = [(float(x), float(y)) for x, y in self.to_world(corners)]
             rows += _edges_and_vertices(
@@ -308,6 +309,24 @@ def _shapes(body: RigidBody, holder: pymunk.Body) -> list[pymunk.Shape]:
     shapes += [pymunk.Segment(holder, (x0, y0), (x1, y1), r) for x0, y0, x1, y1, r in body.segments]
     shapes += [pymunk.Poly(holder, list(corners), radius=r) for corners, r in body.polygons]
     return shapes
+
+
+def _straight(pieces: list[tuple[Point, Point, float]]) -> list[tuple[Point, Point, float]]:
+    """The same edges, with one in place of two that go straight on: right where these meet, a grain would be felt by both."""
+    edges = pieces[:1]
+    for start, end, radius in pieces[1:]:
+        begin, middle, same = edges[-1]
+        before, after = np.subtract(middle, begin), np.subtract(end, start)
+        aside = abs(before[0] * after[1] - before[1] * after[0])
+        if (
+            radius == same
+            and math.dist(middle, start) < SAME_POINT
+            and aside <= SAME_DIRECTION * float(np.dot(before, after))
+        ):
+            edges[-1] = begin, end, radius
+        else:
+            edges.append((start, end, radius))
+    return edges
 
 
 def _edges_and_vertices(edges: list[tuple[Point, Point, float]]) -> list[list[float]]:

@@ -98,6 +98,20 @@ def test_one_grain_anywhere_along_a_wall(
     assert reference.energy_and_forces(packing, rows)[0] == pytest.approx(energy, abs=1e-10)
 
 
+@pytest.mark.parametrize("box", [None, PeriodicBox(WIDTH)], ids=["no box", "around a cell"])
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_a_grain_right_where_two_pieces_of_a_straight_wall_meet(
+    box: PeriodicBox | None, angle: float
+) -> None:
+    """It has one contact, not one with each, wherever the body has been turned to."""
+    pieces = [(-5.5, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 5.5, 0.0, 0.0)]
+    body = RigidBody("wall", segments=pieces, angle=0.0 if box else angle)
+    x, y = body.to_world([(0.0, 0.7)])[0]
+    packing = Packing([x], [y], 1.0, 0.0, STIFFNESS, box=box)
+    energy, _ = examples.forces(packing, body.primitives())
+    assert energy == pytest.approx(0.5 * STIFFNESS * 0.3**2, rel=1e-12)
+
+
 @pytest.mark.parametrize("radius", [0.0, 0.3])
 def test_forces_are_slopes_of_the_energy_where_a_wall_ends(radius: float) -> None:
     """Central differences of 1e-6 R, of a tilted grain, across what would be an end."""
