@@ -36,7 +36,9 @@ def test_ticks_are_within_and_not_too_many(low: float, span: float, most: int) -
     high = low + span
     found = ticks(low, high, most)
     assert len(found) <= most + 1
-    assert all(low - 1e-6 * span <= tick <= high + 1e-6 * span for tick in found)
+    # Where numbers are large beside their span, a tick is a rounded product with a rounded step.
+    slack = 1e-6 * span + 2.0 * math.ulp(max(abs(low), abs(high)))
+    assert all(low - slack <= tick <= high + slack for tick in found)
 
 
 @pytest.mark.parametrize("high", [0.0, -1.0, math.nan, math.inf])

@@ -43,6 +43,7 @@ def invisible_screen(width: int = 1400, height: int = 900) -> Iterator[str]:
             f"{width}x{height}x24",
             "-nolisten",
             "tcp",
+            "-noreset",  # else it begins anew whenever xdotool was its only client, and lets nobody in meanwhile
         ],
         pass_fds=(writing,),
         stderr=subprocess.DEVNULL,
