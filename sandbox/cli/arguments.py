@@ -15,6 +15,7 @@ from typing import Any, NoReturn, TypeVar
 
 from core.errors import InputError, did_you_mean
 from core.files import clear, followed, try_writing
+from sandbox.files.pipes import hold
 
 SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
@@ -178,6 +179,10 @@ def _writable(option: str, text: str, path: Path) -> Path:
     clear(folder, target.name)
     # Only an attempt tells about read-only file systems, quotas, access lists, and names that are too long.
     try_writing(path)
+    try:
+        hold(path)
+    except InputError as error:
+        raise InputError(f"{option} {error}") from None
     return path
 
 

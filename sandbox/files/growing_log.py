@@ -15,6 +15,7 @@ from typing import BinaryIO
 from core.errors import InputError
 from core.files import followed, is_special
 from sandbox.files.log_file import last_line, lines_of, write_log
+from sandbox.files.pipes import with_reader
 from sandbox.session.log import Log
 
 log = logging.getLogger(__name__)
@@ -69,7 +70,8 @@ class GrowingLog:
             return
         try:
             if is_special(self.path):
-                write_log(self.path, newest)
+                with with_reader(self.path):
+                    write_log(self.path, newest)
             else:
                 self._finish(newest)
         except OSError as error:

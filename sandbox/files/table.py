@@ -14,6 +14,7 @@ from typing import Any, BinaryIO, Protocol
 
 from core.errors import InputError
 from core.files import atomic_write, followed, is_special
+from sandbox.files.pipes import with_reader
 from sandbox.interrupts import deferred
 
 EVERY = 0.5  # [s] between two looks at what is new
@@ -139,7 +140,8 @@ class GrowingTable:
         """Write all that is left, and wait until the disk has it."""
         now = self._tables()
         if is_special(self.path):
-            write_csv(self.path, _table(now), self._spelling)
+            with with_reader(self.path):
+                write_csv(self.path, _table(now), self._spelling)
             return
         with deferred():
             try:
@@ -213,7 +215,7 @@ def _named(
 
 
 def _not_written(path: str | os.PathLike[str], error: OSError, rows: int = 0) -> InputError:
-    kept = "; the earlier file was kept" if Path(path).exists() else ""
+    kept = "; the earlier file was kept" if Path(path).is_file() else ""
     if rows:
         kept = f"; it holds the first {rows} rows"
     reason = (error.strerror or str(error)).lower()

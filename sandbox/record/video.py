@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from core import files
 from core.errors import InputError
 from core.files import atomic_write
+from sandbox.files.pipes import with_reader
 from sandbox.interrupts import deferred
 
 SUFFIXES = (".mp4", ".webm", ".gif", ".png")
@@ -129,7 +130,8 @@ class VideoWriter:
         with deferred():
             try:
                 if self.frames:
-                    self._finish()
+                    with with_reader(self.path):
+                        self._finish()
             except OSError as error:
                 raise self._failed(error) from error
             finally:
@@ -217,7 +219,7 @@ class VideoWriter:
         reason = _why_not_writable(self.path.parent) or f"the encoder stopped ({_one_line(error)})"
         self.discard()
         _let_go_of_pipes(error)
-        kept = "; the earlier file was kept" if self.path.exists() else ""
+        kept = "; the earlier file was kept" if self.path.is_file() else ""
         return InputError(f"cannot write {self.path}: {reason}{kept}")
 
     def _remove_temporaries(self) -> None:

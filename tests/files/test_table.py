@@ -215,3 +215,11 @@ def test_a_pipe_gets_all_at_the_end(tmp_path: Path) -> None:
     reader.join(60)
     assert [len(text.splitlines()) for text in got] == [5]
     assert pipe.is_fifo()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device here")
+def test_a_device_is_no_earlier_file(tmp_path: Path) -> None:
+    full = tmp_path / "run.csv"
+    full.symlink_to("/dev/full")
+    with pytest.raises(InputError, match=r"no space left on device$"):
+        write_csv(full, Growing())

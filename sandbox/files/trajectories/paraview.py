@@ -85,7 +85,7 @@ class ParaView:
 def _named_in(path: Path) -> set[Path]:
     """The files that an earlier run has left, as its PVD file names them."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8") if path.is_file() else ""
     except (OSError, ValueError):
         return set()
     return {path.with_name(folder) / name for folder, name in _PART.findall(text)}

@@ -11,6 +11,7 @@ from typing import BinaryIO, Protocol, Self
 
 from core.errors import InputError
 from core.files import followed, is_special
+from sandbox.files.pipes import with_reader
 from sandbox.files.trajectories.arrays import Arrays
 from sandbox.files.trajectories.extxyz import ExtendedXYZ
 from sandbox.files.trajectories.paraview import ParaView
@@ -79,7 +80,8 @@ class Trajectory:
         with deferred():
             try:
                 if self.frames and (kind is None or issubclass(kind, KeyboardInterrupt)):
-                    self._writer.finish()
+                    with with_reader(self.path):
+                        self._writer.finish()
             except OSError as failed:
                 raise self._failed(failed) from failed
             finally:
@@ -87,7 +89,7 @@ class Trajectory:
                     self._aside.close()
 
     def _failed(self, error: OSError) -> InputError:
-        kept = "; the earlier file was kept" if self.path.exists() else ""
+        kept = "; the earlier file was kept" if self.path.is_file() else ""
         return InputError(
             f"cannot write {self.path}: {(error.strerror or str(error)).lower()}{kept}"
         )
