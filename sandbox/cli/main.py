@@ -19,6 +19,8 @@ from sandbox.cli import study as studies
 from sandbox.cli import sweep as sweeps
 from sandbox.cli.arguments import Parser, argument
 from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
+from sandbox.files.pipes import let_go
+from sandbox.interrupts import hear_no_more, stop_like_ctrl_c
 from scenes.parameter import LARGEST_SEED
 
 PROGRAM = "python -m sandbox"
@@ -28,8 +30,19 @@ NO_ROOM = {errno.ENOSPC, errno.EDQUOT}  # a full disk, a full share of it
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return the exit code."""
-    with streams.prepared():
-        return _run(list(sys.argv[1:] if argv is None else argv))
+    with streams.prepared(), stop_like_ctrl_c():
+        try:
+            return _run(list(sys.argv[1:] if argv is None else argv))
+        finally:
+            let_go()
+
+
+def program() -> int:
+    """``main`` for a process that ends with it."""
+    with stop_like_ctrl_c():
+        code = main()
+        hear_no_more()
+    return code
 
 
 def _run(words: list[str]) -> int:
@@ -43,7 +56,7 @@ def _run(words: list[str]) -> int:
         print(f"error: {arguments.one_line(str(error))}", file=sys.stderr)
         return USER_MISTAKE
     except KeyboardInterrupt:
-        print("stopped", file=sys.stderr)  # a command that knows more about it says it itself
+        print("stopped: nothing was written", file=sys.stderr)  # who has written something says so
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read the output (head, a pager) has seen enough. Python flushes once more at exit.

@@ -18,7 +18,6 @@ Study = Callable[[argparse.Namespace], int]
 
 def paper(options: argparse.Namespace) -> int:
     """Judge the claims of the paper."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
     from sandbox.studies.paper import study
     from sandbox.studies.paper.report import summary
@@ -27,8 +26,7 @@ def paper(options: argparse.Namespace) -> int:
     require_matplotlib()
     require_scipy()
     folder = prepare_folder(options.out)
-    with stop_like_ctrl_c():
-        outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
+    outcome = study.study(folder, quick=options.quick, only=options.only, jobs=options.jobs)
     if outcome.interrupted:
         return stopped(outcome.runs)
     for line in summary(outcome.judged):
@@ -39,7 +37,6 @@ def paper(options: argparse.Namespace) -> int:
 
 def accuracy(options: argparse.Namespace) -> int:
     """Measure error against run time."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.accuracy import study
     from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
 
@@ -47,14 +44,13 @@ def accuracy(options: argparse.Namespace) -> int:
     require_matplotlib()
     require_scipy()
     folder = prepare_folder(options.out)
-    with stop_like_ctrl_c():
-        outcome = study.study(
-            folder,
-            scenes=options.scene,
-            quick=options.quick,
-            jobs=options.jobs,
-            only_estimate=options.estimate,
-        )
+    outcome = study.study(
+        folder,
+        scenes=options.scene,
+        quick=options.quick,
+        jobs=options.jobs,
+        only_estimate=options.estimate,
+    )
     if outcome.interrupted:
         return stopped(outcome.jobs)
     for name, words in (*outcome.statements.items(), *outcome.failures.items()):
@@ -67,15 +63,13 @@ def stability(options: argparse.Namespace) -> int:
     """Carry out the hard cases."""
     from collections import Counter
 
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.common.folder import prepare_folder, require_matplotlib
     from sandbox.studies.stability import study
     from sandbox.studies.stability.case import FAILS
 
     require_matplotlib()
     folder = prepare_folder(options.out, "")
-    with stop_like_ctrl_c():
-        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    done = study.study(folder, quick=options.quick, jobs=options.jobs)
     if done.interrupted:
         return stopped(len(done.outcomes))
     verdicts = Counter(outcome.verdict for outcome in done.outcomes)
@@ -87,15 +81,13 @@ def stability(options: argparse.Namespace) -> int:
 
 def hand(options: argparse.Namespace) -> int:
     """Measure what a hand can move, play every tour, let random hands loose."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.common.folder import prepare_folder, require_scipy
     from sandbox.studies.hand import study
     from sandbox.studies.hand.report import wrong
 
     require_scipy()
     folder = prepare_folder(options.out, "")
-    with stop_like_ctrl_c():
-        done = study.study(folder, quick=options.quick, jobs=options.jobs)
+    done = study.study(folder, quick=options.quick, jobs=options.jobs)
     if done.interrupted:
         return stopped(len(done.rows))
     found = [*wrong(done.rows), *done.failures]
@@ -108,7 +100,6 @@ def hand(options: argparse.Namespace) -> int:
 
 def classics(options: argparse.Namespace) -> int:
     """Hold the program against textbook and published cases."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.classics import study
     from sandbox.studies.common.folder import prepare_folder, require_scipy
     from sandbox.studies.common.statistics import FAILS
@@ -116,8 +107,7 @@ def classics(options: argparse.Namespace) -> int:
     cases = study.choose(options.only)
     require_scipy()
     folder = prepare_folder(options.out, "")
-    with stop_like_ctrl_c():
-        done = study.study(folder, quick=options.quick, jobs=options.jobs, cases=cases)
+    done = study.study(folder, quick=options.quick, jobs=options.jobs, cases=cases)
     if done.interrupted:
         return stopped(len(done.rows))
     width = max((len(case.name) for case, _, _, _ in done.verdicts), default=0)
@@ -132,7 +122,6 @@ def classics(options: argparse.Namespace) -> int:
 
 def clogging(options: argparse.Namespace) -> int:
     """Clogging as an experiment: ensembles of drains and pushes."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.clogging import study
     from sandbox.studies.common.folder import prepare_folder, require_matplotlib, require_scipy
     from sandbox.sweep import workers
@@ -143,8 +132,7 @@ def clogging(options: argparse.Namespace) -> int:
     require_scipy()
     ways = Ways(workers.check(options.executor or workers.LOCAL), options.jobs)
     folder = prepare_folder(options.out, "")
-    with stop_like_ctrl_c():
-        done = study.study(folder, ways, parts, quick=options.quick)
+    done = study.study(folder, ways, parts, quick=options.quick)
     if done.interrupted:
         return stopped(done.runs)
     width = max((len(claim.name) for claim, _, _, _ in done.verdicts), default=0)

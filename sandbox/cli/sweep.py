@@ -94,12 +94,9 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
 
 def sweep(options: argparse.Namespace) -> int:
     """Carry a sweep out, or go on with one, and print what it came to."""
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.studies.common.folder import require_matplotlib, require_scipy
-    from sandbox.sweep import export, summary, workers
-    from sandbox.sweep.sweep import Ways
-    from sandbox.sweep.sweep import sweep as carry_out
-    from sandbox.sweep.tables import Tables
+    from sandbox.sweep import export, workers
+    from sandbox.sweep.tables import is_sweep
 
     folder, request = _asked(options)
     workers.check(options.executor)
@@ -108,13 +105,27 @@ def sweep(options: argparse.Namespace) -> int:
         export.require_pyarrow()
     if options.pictures or options.players:
         require_matplotlib()
+    try:
+        return _carried_out(options, folder, request)
+    except KeyboardInterrupt:  # before or after the runs
+        there = f": python -m sandbox sweep {folder} goes on from there"
+        there = there if is_sweep(str(folder)) else ": nothing was written"
+        print(f"stopped{there}", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _carried_out(options: argparse.Namespace, folder: Path, request: Request) -> int:
+    from sandbox.sweep import export, summary
+    from sandbox.sweep.sweep import Ways
+    from sandbox.sweep.sweep import sweep as carry_out
+    from sandbox.sweep.tables import Tables
+
     ways = Ways(options.executor, options.jobs)
-    with stop_like_ctrl_c():
-        tables = Tables(folder, request)
-        try:
-            whole = carry_out(tables, ways)
-        finally:
-            tables.close()
+    tables = Tables(folder, request)
+    try:
+        whole = carry_out(tables, ways)
+    finally:
+        tables.close()
     found = summary.cells(tables)
     print(summary.as_text(request, found))
     if not whole:

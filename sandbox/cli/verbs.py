@@ -9,6 +9,7 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from core.errors import InputError
 from sandbox.cli import arguments
 from sandbox.cli import study as studies
 from sandbox.cli.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
+from sandbox.interrupts import deferred
 from scenes.text import counted
 
 if TYPE_CHECKING:
@@ -95,21 +97,23 @@ def record(options: argparse.Namespace) -> int:
     steps: int = options.steps or sessions[0].scene.steps(sessions[0].settings)
     if row is not None and not options.steps:
         steps = row.increments
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.record import record as films
 
-    with stop_like_ctrl_c():
-        outcome = films.record(sessions, steps, output)
-    all_hold = _report(sessions, outcome, output)
-    if outcome.interrupted:
-        return INTERRUPTED
-    if row is not None and row.state and steps == row.increments:
-        same = sessions[0].state_hash() == row.state
-        print(
-            "the same state as in the table" if same else f"NOT the state of the table, {row.state}"
-        )
-        return OK if same else DIFFERENT
-    return OK if all_hold else CHECK_FAILED
+    outcome = films.record(sessions, steps, output)
+    with suppress(KeyboardInterrupt), deferred():  # all is written, and is told to the end
+        all_hold = _report(sessions, outcome, output)
+        if outcome.interrupted:
+            return INTERRUPTED
+        if row is not None and row.state and steps == row.increments:
+            same = sessions[0].state_hash() == row.state
+            print(
+                "the same state as in the table"
+                if same
+                else f"NOT the state of the table, {row.state}"
+            )
+            return OK if same else DIFFERENT
+        return OK if all_hold else CHECK_FAILED
+    return INTERRUPTED
 
 
 def replay(options: argparse.Namespace) -> int:
@@ -121,21 +125,23 @@ def replay(options: argparse.Namespace) -> int:
     from sandbox.session.replay import session_of
 
     session_of(log)  # finds mistakes before any work
-    from sandbox.interrupts import stop_like_ctrl_c
     from sandbox.record.record import repeat
 
-    with stop_like_ctrl_c():
-        session, outcome = repeat(log, output)
-    _report([session], outcome, output)
-    if outcome.interrupted:
-        return INTERRUPTED
-    same = session.state_hash() == log.hash
-    print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
-    refused, why = session.refusals
-    if refused:
-        noun = "command" if refused == 1 else "commands"
-        print(f"{refused} {noun} of the log could not be carried out: {arguments.one_line(why)}")
-    return OK if same and not refused else DIFFERENT
+    session, outcome = repeat(log, output)
+    with suppress(KeyboardInterrupt), deferred():
+        _report([session], outcome, output)
+        if outcome.interrupted:
+            return INTERRUPTED
+        same = session.state_hash() == log.hash
+        print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
+        refused, why = session.refusals
+        if refused:
+            noun = "command" if refused == 1 else "commands"
+            print(
+                f"{refused} {noun} of the log could not be carried out: {arguments.one_line(why)}"
+            )
+        return OK if same and not refused else DIFFERENT
+    return INTERRUPTED
 
 
 def bench(options: argparse.Namespace) -> int:
@@ -155,14 +161,16 @@ def bench(options: argparse.Namespace) -> int:
         print(f"{bench_report.as_text(section)}\n", flush=True)
 
     report = benchmark.run(quick=options.quick, peers=options.peers, show=show)
-    for path, form in ((data, bench_report.as_json), (table, bench_report.as_markdown)):
-        if path is not None:
-            with atomic_write(path) as file:
-                file.write(form(report).encode())
-    missed = len(report.missed())
-    noun = "target" if missed == 1 else "targets"
-    print(f"{missed} {noun} missed" if missed else "all targets met")
-    return OK
+    with suppress(KeyboardInterrupt), deferred():
+        for path, form in ((data, bench_report.as_json), (table, bench_report.as_markdown)):
+            if path is not None:
+                with atomic_write(path) as file:
+                    file.write(form(report).encode())
+        missed = len(report.missed())
+        noun = "target" if missed == 1 else "targets"
+        print(f"{missed} {noun} missed" if missed else "all targets met")
+        return OK
+    return INTERRUPTED
 
 
 def study(options: argparse.Namespace) -> int:
@@ -187,11 +195,9 @@ def site(options: argparse.Namespace) -> int:
     scenes = [registry.get(name).name for name in options.scene or registry.names()]
     results.require_markdown()
     folder = gallery.prepared(options.out)
-    from sandbox.interrupts import stop_like_ctrl_c
 
     try:
-        with stop_like_ctrl_c():
-            written = gallery.site(folder, list(dict.fromkeys(scenes)), options.steps)
+        written = gallery.site(folder, list(dict.fromkeys(scenes)), options.steps)
     except KeyboardInterrupt:
         print(f"stopped; the pages in {folder} that are there are whole", file=sys.stderr)
         return INTERRUPTED

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from core.errors import InputError
 from core.files import atomic_write
 from sandbox.bars import bar_options
+from sandbox.files.pipes import with_reader
 from sandbox.files.table import PLAIN, GrowingTable, Spelling
 from sandbox.interrupts import deferred
 from sandbox.record.video import VideoWriter
@@ -181,14 +182,24 @@ def run(
         interrupted = True
     finally:
         if table and increments and not failed:
-            table.finish()
+            interrupted |= _interrupted(table.finish)
     if tape and increments and output:
-        _write_page(tape, output)
+        interrupted |= _interrupted(lambda: _write_page(tape, output))
     if failed:
         raise failed
     rows = sum(len(session.history) for session in sessions)
     pictures = len(tape.moments) if tape else 0
     return Outcome(increments, writer.frames if writer else 0, rows, interrupted, pictures)
+
+
+def _interrupted(finish: Callable[[], None]) -> bool:
+    """Finish something, to its end; whether Ctrl-C came meanwhile."""
+    try:
+        with deferred():
+            finish()
+    except KeyboardInterrupt:
+        return True
+    return False
 
 
 def _begun_tape(sessions: Sequence[Session], output: Output) -> Tape:
@@ -203,7 +214,7 @@ def _write_page(tape: Tape, output: Output) -> None:
     from sandbox.player.page import Look, page
 
     assert output.page is not None
-    with deferred(), atomic_write(output.page) as file:
+    with with_reader(output.page), atomic_write(output.page) as file:
         file.write(page(tape, Look(output.theme, output.view)).encode())
 
 

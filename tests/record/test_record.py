@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import imageio.v2
 import numpy as np
@@ -127,6 +127,29 @@ def test_ctrl_c_leaves_as_many_frames_as_increments(tmp_path: Path, session: Car
     assert run(session, 9, film, table) == Outcome(3, 3, 4, interrupted=True)
     assert len(imageio.v2.mimread(film)) == 3
     assert len(table.read_text().split()) == 1 + 4
+
+
+@pytest.mark.parametrize("moment", ["film", "table", "page"])
+def test_ctrl_c_while_files_are_finished_is_told_with_what_was_written(
+    tmp_path: Path, session: Cardboard, monkeypatch: pytest.MonkeyPatch, moment: str
+) -> None:
+    film, table, page = tmp_path / "film.png", tmp_path / "run.csv", tmp_path / "run.html"
+
+    def press(*_: object) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+    tape = SimpleNamespace(moments=[1, 2], add=lambda frames: None)
+    monkeypatch.setattr(record, "_begun_tape", lambda sessions, output: tape)
+    for name, owner, method in (
+        ("film", VideoWriter, "_finish"),
+        ("table", GrowingTable, "_grow"),
+        ("page", record, "_write_page"),
+    ):
+        monkeypatch.setattr(owner, method, press if name == moment else lambda *_: None)
+    output = Output(film, table, SIZE, page=page)
+    outcome = record.run([cast("Session", session)], iter([True, True]), 2, output)
+    assert outcome.interrupted
+    assert outcome.pictures == 2
 
 
 def test_ctrl_c_before_the_first_increment_writes_nothing(
