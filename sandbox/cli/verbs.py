@@ -132,8 +132,9 @@ def replay(options: argparse.Namespace) -> int:
         _report([session], outcome, output)
         if outcome.interrupted:
             return INTERRUPTED
-        same = session.state_hash() == log.hash
-        print("the same state as in the log" if same else f"NOT the state of the log, {log.hash}")
+        same = log.hash in ("", session.state_hash())
+        said = "the same state as in the log" if same else f"NOT the state of the log, {log.hash}"
+        print(said if log.hash else "the log does not say in which state the run ended")
         refused, why = session.refusals
         if refused:
             noun = "command" if refused == 1 else "commands"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import json
+import logging
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -20,6 +21,8 @@ from sandbox.files.scene_file import content_of, parse_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command, from_data, to_data
 from sandbox.session.log import Log
+
+log = logging.getLogger(__name__)
 
 FORMAT = "auxetic-sandbox log"
 VERSION = 1
@@ -63,7 +66,10 @@ def _line(data: Mapping[str, object]) -> bytes:
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
-    """Read a log. Raises InputError for one that is missing, malformed, truncated, hostile or of another version."""
+    """Read a log. Raises InputError for one that is missing, malformed, hostile or of another version.
+
+    Where it breaks off, as a power cut may leave it, what is whole of it is read, and that is said; the hash is empty then.
+    """
     path = Path(path)
     entries = list(_entries(path))
     if not entries:
@@ -92,27 +98,27 @@ def read_log(path: str | os.PathLike[str]) -> Log:
         raise InputError(
             f"{path}: line 1: a log has a start if it began with a file, and only then"
         )
-    if len(entries) < 2 or "end" not in last:
-        raise InputError(
-            f"{path}: the log is truncated (its last line does not say where the run ended)"
-        )
+    whole = len(entries) > 1 and "end" in last
     commands: list[tuple[int, Command]] = []
     before = 0
-    for number, entry in enumerate(entries[1:-1], 2):
-        at = entry.pop("at", None)
-        if not _whole(at) or at < before:
-            raise InputError(
-                f"{path}: line {number}: 'at' must be a whole number that never decreases"
-            )
+    for number, entry in enumerate(entries[1:-1] if whole else entries[1:], 2):
         try:
-            commands.append((at, from_data(entry)))
+            commands.append(_command(entry, before))
         except InputError as error:
+            if number == len(entries):  # the beginning of one line and the end of another
+                break
             raise InputError(f"{path}: line {number}: {error}") from None
-        before = at
-    end, digest = last["end"], last.get("hash")
+        before = commands[-1][0]
+    end, digest = (last["end"], last.get("hash")) if whole else (before, "")
     if not _whole(end) or not before <= end <= MOST_INCREMENTS or not isinstance(digest, str):
         raise InputError(
             f"{path}: the last line must give 'end', a number of increments, and 'hash'"
+        )
+    if not whole:
+        log.warning(
+            "%s: the log breaks off: what is whole goes up to increment %d, not to where the run ended",
+            path,
+            end,
         )
     start = None if version == VERSION else _start(path, head["start"], version)
     return Log(scene, packing, seed, settings, tuple(commands), end, digest, start)
@@ -131,6 +137,13 @@ def _start(path: Path, start: object, version: int) -> SceneFile:
     return parse_pair(name, start["text"].encode(), lambda _: grains)
 
 
+def _command(entry: dict[str, Any], before: int) -> tuple[int, Command]:
+    at = entry.pop("at", None)
+    if not _whole(at) or at < before:
+        raise InputError("'at' must be a whole number that never decreases")
+    return at, from_data(entry)
+
+
 def _bytes(path: Path, text: object) -> bytes:
     try:
         if isinstance(text, str):
@@ -141,7 +154,11 @@ def _bytes(path: Path, text: object) -> bytes:
 
 
 def _entries(path: Path) -> Iterator[dict[str, Any]]:
-    """Line after line, so that a hostile file is refused at its first bad line and not after it has filled the memory."""
+    """Line after line, so that a hostile file is refused at its first bad line and not after it has filled the memory.
+
+    The last one may be torn, and is left out then.
+    """
+    torn: InputError | None = None
     try:
         if not path.is_file():
             raise InputError(f"{path}: {'this is no file' if path.exists() else 'no such file'}")
@@ -151,7 +168,16 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
             for number, line in enumerate(file, 1):
                 if number > MOST_LINES:
                     raise InputError(f"{path}: more lines than any log of this program has")
-                yield _entry(path, number, line)
+                if torn is not None:  # which is not the last
+                    raise torn
+                try:
+                    entry = _entry(path, number, line)
+                except InputError as error:
+                    if number == 1:
+                        raise
+                    torn = error
+                else:
+                    yield entry
     except InputError:
         raise
     except (
@@ -167,7 +193,7 @@ def _entry(path: Path, number: int, line: str) -> dict[str, Any]:
         entry = data_of(line.encode())
     except InputError as error:
         raise InputError(
-            f"{path}: line {number} is not valid JSON; the log is damaged or truncated: {error}"
+            f"{path}: line {number} is not valid JSON; the log is damaged: {error}"
         ) from None
     if not isinstance(entry, dict):
         raise InputError(f"{path}: line {number} is not a JSON object")

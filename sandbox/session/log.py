@@ -13,7 +13,8 @@ from sandbox.session.commands import Command
 class Log:
     """A run: ``commands`` are (increments finished before, command), in order; it ended after ``end`` increments in ``hash``.
 
-    The log of a run that began with a scene file holds that file, both parts of it, and needs no other.
+    A log that broke off has an empty hash. That of a run that began with a scene file holds that file, and needs
+    no other.
     """
 
     scene: str

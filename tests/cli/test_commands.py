@@ -356,8 +356,7 @@ def test_replay_carries_out_what_came_after_the_last_increment(tmp_path: Path) -
     [
         ("", "empty"),
         ("not json\n", "line 1 is not valid JSON"),
-        (json.dumps(HEAD) + "\n" + json.dumps(PUSH[0])[:20], "line 2"),
-        (json.dumps(HEAD) + "\n" + json.dumps(PUSH[0]), "truncated"),
+        (f'{json.dumps(HEAD)}\n{json.dumps(PUSH[0])[:20]}\n{{"end": 0, "hash": ""}}', "line 2"),
         (json.dumps({**HEAD, "scene": "hoper"}) + '\n{"end": 0, "hash": ""}', "hopper"),
         (json.dumps({**HEAD, "settings": {"x": 1}}) + '\n{"end": 0, "hash": ""}', "'x'"),
     ],

@@ -6,6 +6,7 @@ import os
 import shutil
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 
 from core.errors import InputError
 from sandbox.files.growing_log import GrowingLog
-from sandbox.files.log_file import read_log
+from sandbox.files.log_file import last_line, read_log, write_log
 from sandbox.session.commands import Command, Grab, Move, Protocol
 from sandbox.session.log import Log
 
@@ -64,6 +65,33 @@ def test_the_thread_writes_by_itself(tmp_path: Path) -> None:
             assert time.monotonic() < patience
             time.sleep(0.005)
     one.close()
+
+
+@pytest.mark.parametrize("rest", ["of the file before", "zeros", "none"])
+def test_after_a_power_cut_what_is_whole_is_read(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture, rest: str
+) -> None:
+    """It may come at any byte of what is put in the place of the last line."""
+    path = tmp_path / "it.jsonl"
+    before, after = replace(until(3), hash="3"), replace(until(4), hash="4")
+    write_log(path, before)
+    old = path.read_bytes()
+    write_log(path, after)
+    new = path.read_bytes()
+    behind = {"of the file before": old, "zeros": bytes(len(new)), "none": b""}[rest]
+    begin = len(old) - len(last_line(before))
+    commands = new[begin:].splitlines()[:-1]
+    for place in range(begin, len(new)):
+        path.write_bytes(new[:place] + behind[place:])
+        caplog.clear()
+        log = read_log(path)
+        if not log.hash:
+            assert len(caplog.messages) == 1
+            whole = sum(line in commands for line in path.read_bytes()[begin:].splitlines())
+            assert log.commands == after.commands[: len(before.commands) + whole]
+            assert log.end == log.commands[-1][0]
+        else:  # not yet begun, or but for the last line's end
+            assert log == (before if place < begin + 3 else after)
 
 
 class Full:
