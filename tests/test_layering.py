@@ -98,7 +98,7 @@ ROOMS = {
     "window.solvers": "files session words scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
-    "site": "record player session words scenes core",
+    "site": "studies.common record player session words scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,
     "studies.stability": STUDY,

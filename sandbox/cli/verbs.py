@@ -191,12 +191,12 @@ def site(options: argparse.Namespace) -> int:
     """Write the gallery."""
     from sandbox.site import site as gallery
     from sandbox.site import studies as results
+    from sandbox.studies.common.folder import prepare_folder
     from scenes import registry
 
     scenes = [registry.get(name).name for name in options.scene or registry.names()]
     results.require_markdown()
-    folder = gallery.prepared(options.out)
-
+    folder = prepare_folder(options.out, "")
     try:
         written = gallery.site(folder, list(dict.fromkeys(scenes)), options.steps)
     except KeyboardInterrupt:

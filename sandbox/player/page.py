@@ -66,9 +66,8 @@ def page(tape: Tape, look: Look | None = None) -> str:
     """
     look = look or Look()
     views.view_named(look.view)
-    first = tape.last[0] if tape.last else None
-    recorded = base64.b64encode(recording(tape)).decode("ascii")
-    assert first is not None
+    recorded = base64.b64encode(recording(tape)).decode("ascii")  # raises for an empty tape
+    first = tape.last[0]
     titles = {
         "title": in_each(lambda: words.title(first.scene, first.title)),
         "question": in_each(lambda: words.question(first.scene)),

@@ -14,7 +14,7 @@ from core.errors import InputError
 from sandbox.draw.numbers import FINER, nice_ceiling, typical_largest
 from sandbox.draw.views import VIEWS, View
 from sandbox.player import series
-from sandbox.player.coding import Writer
+from sandbox.player.coding import Writer, carried
 from sandbox.player.kept import QUANTITIES, Kept, Said
 from sandbox.player.series import Tops
 from sandbox.player.tape import Tape
@@ -158,15 +158,8 @@ def _bounds(moments: Sequence[Kept]) -> list[float]:
 
 
 def _finite(values: Floats) -> Floats:
-    """A curve without gaps, and never empty: a value that is none repeats the one before."""
-    if not values.size:
-        return np.zeros(1)
-    known = np.isfinite(values)
-    if known.all():
-        return values
-    latest = np.maximum.accumulate(np.where(known, np.arange(values.size), 0))
-    filled: Floats = np.where(np.isfinite(values[latest]), values[latest], 0.0)
-    return filled
+    """A curve without gaps, and never empty."""
+    return carried(values[:, None])[:, 0] if values.size else np.zeros(1)
 
 
 def _step(values: Floats) -> float:

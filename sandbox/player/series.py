@@ -16,9 +16,7 @@ from sandbox.session.frame import BodyShape
 PLACE = 1 / 512  # [R] steps of places; of shapes half that
 TURN = 1 / 128  # [rad]
 LEVELS = 250  # steps up to the top of a scale
-OCTAVES = (
-    2  # steps of the unbalanced force to a factor of two: nobody needs more than its magnitude
-)
+OCTAVES = 2  # steps to a factor of two of the unbalanced force: its magnitude is enough
 LEAST = 1e-9  # [k R] of it
 
 STEPS = {

@@ -58,11 +58,6 @@ class Tape:
         """How many there were."""
         return 0 if self._latest is None else increment_of(self._latest)
 
-    @property
-    def thinned(self) -> bool:
-        """Has the budget been too small for all that was asked for?"""
-        return self.every > self._asked
-
 
 def spaced(moments: Sequence[T], every: int, increment: Callable[[T], int]) -> list[T]:
     """The first one, and of the others those that come so many increments after the one before, or more."""

@@ -6,8 +6,6 @@ import base64
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from core.errors import InputError
-from core.files import atomic_write, clear, try_writing
 from sandbox.bars import bar_options
 from sandbox.player.page import Look, page
 from sandbox.player.pieces import spoken
@@ -17,9 +15,11 @@ from sandbox.site.markup import SHOWN, SITE, document, link, said, title_of
 from sandbox.site.runs import run
 from sandbox.site.worksheets import FILE as WORKSHEETS
 from sandbox.site.worksheets import worksheets
+from sandbox.studies.common.folder import write_text
 from sandbox.words import words
 
 MOST = 15_000_000  # bytes that all pages may have together
+BAR = "{desc:<18.18} {percentage:3.0f}%|{bar}| {elapsed}"
 
 
 def site(folder: Path, scenes: Sequence[str], steps: int | None = None) -> list[Path]:
@@ -43,22 +43,6 @@ def site(folder: Path, scenes: Sequence[str], steps: int | None = None) -> list[
     for name, text in _other_pages(tapes):
         written.append(_write(folder / name, text))
     return written
-
-
-def prepared(text: str) -> Path:
-    """The folder, made if need be. Raises InputError, before any work is done, if it cannot be written to."""
-    folder = Path(text)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        try_writing(folder / "index.html")
-        clear(folder)
-    except (OSError, ValueError) as error:
-        reason = str(getattr(error, "strerror", None) or error).lower()
-        raise InputError(f"--out {text}: cannot write there ({reason})") from error
-    return folder
-
-
-BAR = "{desc:<18.18} {percentage:3.0f}%|{bar}| {elapsed}"
 
 
 def _other_pages(tapes: dict[str, Tape]) -> Iterator[tuple[str, str]]:
@@ -135,10 +119,5 @@ def _picture(scene: str, theme: str) -> str:
 
 
 def _write(path: Path, text: str) -> Path:
-    try:
-        with atomic_write(path) as file:
-            file.write(text.encode())
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InputError(f"cannot write {path}: {reason}") from error
+    write_text(path, text)
     return path

@@ -6,7 +6,6 @@ import html
 from collections.abc import Sequence
 
 from sandbox.player.pieces import marked
-from sandbox.player.story import label_parts
 from sandbox.player.tape import Tape
 from sandbox.site.markup import SHOWN, SITE, document, link, said, title_of
 from sandbox.words import language, words
@@ -57,8 +56,8 @@ def _sheet(scene: str, tape: Tape) -> str:
 def _table(packings: Sequence[str], force: str, stroke: str) -> str:
     heads = [
         SHEET["packing"],
-        SHEET["largest"].format(force=_with_unit(force)),
-        SHEET["at"].format(stroke=_with_unit(stroke)),
+        SHEET["largest"].format(force=force),
+        SHEET["at"].format(stroke=stroke),
         SHEET["event"],
         SHEET["own"],
     ]
@@ -84,11 +83,6 @@ def _grid(force: str, stroke: str) -> str:
         f'<text x="{left + WIDE}" y="{bottom + 18}" font-size="14" fill="currentColor" text-anchor="end">{_text(stroke)}</text>'
         "</svg>"
     )
-
-
-def _with_unit(label: str) -> str:
-    name, unit = label_parts(label)
-    return f"{name} [{unit}]" if unit else name
 
 
 def _text(text: str) -> str:

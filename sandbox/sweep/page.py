@@ -12,7 +12,6 @@ from sandbox.sweep.outcome import FAILED
 from sandbox.sweep.pictures import View, axis_label
 from sandbox.sweep.request import Request
 from sandbox.sweep.summary import Cell
-from sandbox.sweep.tables import Row
 
 PAGE, PLAYERS = "index.html", "players"
 TOLD = (
@@ -61,7 +60,7 @@ def write_players(folder: Path, request: Request, cells: Sequence[Cell]) -> dict
     prepare_folder(str(folder), PLAYERS)
     found = {}
     for cell in cells:
-        row = example(cell)
+        row = cell.example
         name = f"{PLAYERS}/{row['row']}.html"
         if row["outcome"] != FAILED and not (folder / name).exists():
             job = request.job(int(row["row"]))
@@ -70,12 +69,6 @@ def write_players(folder: Path, request: Request, cells: Sequence[Cell]) -> dict
         if (folder / name).exists():
             found[int(row["row"])] = name
     return found
-
-
-def example(cell: Cell) -> Row:
-    """A run of the cell that came to what most of them came to: the first of these."""
-    most = max(cell.outcomes.items(), key=lambda item: item[1])[0]
-    return next(row for row in cell.runs if row["outcome"] == most)
 
 
 def _asked(request: Request) -> str:
@@ -106,7 +99,7 @@ def _grid(folder: Path, request: Request, some: Sequence[Cell], players: Mapping
 
 
 def _cell(folder: Path, cell: Cell, players: Mapping[int, str]) -> str:
-    row = example(cell)
+    row = cell.example
     number = int(row["row"])
     command = f"play {folder}#{number}"
     where = players.get(number)

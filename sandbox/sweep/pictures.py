@@ -51,10 +51,6 @@ class View:
             found.setdefault(", ".join(words) or cell.packing, []).append(cell)
         return list(found.items())
 
-    def label(self, place: int) -> str:
-        """Of an axis, with its unit."""
-        return axis_label(self.request, place)
-
 
 def axis_label(request: Request, place: int) -> str:
     """Name and unit of a parameter that is varied."""

@@ -10,7 +10,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from itertools import product
 from typing import Any
 
@@ -245,7 +245,7 @@ def _span(text: str, given: str) -> list[str]:
     try:
         first, last, step = (Decimal(part.strip()) for part in given.split(":"))
         count = int((last - first) / step) + 1
-    except (ValueError, ArithmeticError, InvalidOperation):
+    except (ValueError, ArithmeticError):
         raise InputError(f"--vary {text}: write A:B:STEP, three numbers, STEP not 0") from None
     if count < 1 or (last - first) / step < 0:
         raise InputError(f"--vary {text}: the range is empty, as STEP leads away from B")

@@ -39,6 +39,12 @@ class Cell:
         told = [row["outcome"] for row in self.runs if row["outcome"] in DECIDED]
         return Share(sum(one in STOPPED for one in told), len(told)) if told else None
 
+    @property
+    def example(self) -> Row:
+        """A run that came to what most of them came to: the first of these."""
+        most = max(self.outcomes.items(), key=lambda item: item[1])[0]
+        return next(row for row in self.runs if row["outcome"] == most)
+
     def column(self, name: str) -> Floats:
         """A column of numbers, of the runs that have one, (S,)."""
         return np.array([float(row[name]) for row in self.runs if row[name] != ""])

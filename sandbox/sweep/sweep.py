@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import CancelledError
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 
 from core.errors import InputError
@@ -87,9 +87,4 @@ def sorts(jobs: Iterable[Job]) -> tuple[Ingredients, ...]:
 def compile_all(terms: Sequence[Ingredients]) -> None:
     """Compile them, or have the cache hold them for those who come later."""
     for each in terms:
-        compile_kernels(
-            periodic=each.periodic,
-            rigid=each.rigid,
-            friction=each.friction,
-            gravity=each.gravity,
-        )
+        compile_kernels(**asdict(each))

@@ -138,7 +138,7 @@ def test_beyond_its_budget_a_tape_is_thinned_and_keeps_the_ends(increments: int)
     assert kept[0] == 0
     assert kept[-1] == increments
     assert set(np.diff(kept[:-1])) <= {tape.every}
-    assert tape.thinned == (increments > 7)
+    assert (tape.every > 1) == (increments > 7)
 
 
 LOST = hopper_frame()  # its numbers went bad

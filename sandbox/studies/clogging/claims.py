@@ -46,13 +46,12 @@ class Claim:
     limits: str
 
 
-def stopped(cells: Sequence[Cell], packing: str | None = None, **at: float) -> Share | None:
-    """The share that stopped, of all cells at those values. ``at``: place of the axis as ``axis0``, ``axis1``."""
+def stopped(cells: Sequence[Cell], *at: float, packing: str | None = None) -> Share | None:
+    """The share that stopped, of all cells ``at`` those values of the first axes."""
     shares = [
         cell.stopped
         for cell in cells
-        if packing in (None, cell.packing)
-        and all(cell.values[int(name[-1])] == value for name, value in at.items())
+        if packing in (None, cell.packing) and cell.values[: len(at)] == at
     ]
     known = [share for share in shares if share is not None]
     if not known:
@@ -75,14 +74,14 @@ def _jamming(found: Found) -> list[Check]:
         (2.0, "near 1", Demand(0.5)),
         (5.0, "near 0", Demand(high=0.5)),
     ):
-        share = stopped(cells, axis0=width)
+        share = stopped(cells, width)
         if share is not None:
             reason = "read off their figure: 1 at two diameters, 0 at five; the half is where it is steep"
             checks.append(
                 _check(f"J at {width:g} diameters", share, expected, demand, reason, share.count)
             )
     for narrow, wide in ((2.0, 3.0), (3.0, 4.0), (2.0, 4.0)):
-        one, other = stopped(cells, axis0=narrow), stopped(cells, axis0=wide)
+        one, other = stopped(cells, narrow), stopped(cells, wide)
         if one is not None and other is not None:
             quantity = (
                 f"J at {narrow:g} less J at {wide:g} diameters ({one.value:.2f}; {other.value:.2f})"
@@ -172,7 +171,7 @@ def _maps(found: Found) -> list[Check]:
     checks = []
     shares = found[SHARES.name]
     for orifice in sorted({float(cell.values[0]) for cell in shares}):
-        one, other = (stopped(shares, axis0=orifice, axis1=share) for share in (0.0, 1.0))
+        one, other = (stopped(shares, orifice, share) for share in (0.0, 1.0))
         if one is not None and other is not None:
             quantity = (
                 f"under gravity, {orifice:g} diameters: share that stops, no auxetic grain less all auxetic "
@@ -183,8 +182,9 @@ def _maps(found: Found) -> list[Check]:
     pushed = found[STRENGTHS.name]
     for orifice in sorted({float(cell.values[0]) for cell in pushed}):
         for kind in ("mixed", "auxetic"):
-            at = {"axis0": orifice, "axis1": USUAL_HAND}
-            one, other = stopped(pushed, "regular", **at), stopped(pushed, kind, **at)
+            one, other = (
+                stopped(pushed, orifice, USUAL_HAND, packing=each) for each in ("regular", kind)
+            )
             if one is not None and other is not None:
                 quantity = (
                     f"hand of {USUAL_HAND:g} k R, {orifice:g} diameters: share that locks, regular less {kind} "

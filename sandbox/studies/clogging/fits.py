@@ -76,7 +76,7 @@ def begun(cell: Cell) -> tuple[Floats, NDArray[np.bool_]]:
 
 def exponential(falls: Falls) -> Fit:
     """q = exp(a − b w²)."""
-    (a, b), _ = _best(falls, lambda p, w: np.exp(p[0] - p[1] * w * w), [(0.0, 0.3), (1.0, 0.5)])
+    a, b = _best(falls, lambda p, w: np.exp(p[0] - p[1] * w * w), [(0.0, 0.3), (1.0, 0.5)])
     form = _bounded(lambda w: np.exp(a - b * w * w))
     words = f"a = {a:.3g}, b = {b:.3g} per square diameter"
     return Fit("exp(a − b w²)", words, form, falls.likelihood(form(falls.width)), 2)
@@ -91,7 +91,7 @@ def divergence(falls: Falls) -> Fit:
         return lambda w: np.exp(p[0]) * np.maximum(critical - w, 0.0) ** np.exp(p[2])
 
     starts = [(-2.0, 0.0, 0.7), (-4.0, 1.0, 1.5), (-1.0, -1.0, 0.3)]
-    p, _ = _best(falls, lambda p, w: form_of(p)(w), starts)
+    p = _best(falls, lambda p, w: form_of(p)(w), starts)
     form = _bounded(form_of(p))
     words = f"w_c = {least + np.exp(p[1]):.3g} diameters, γ = {np.exp(p[2]):.3g}"
     return Fit("c (w_c − w)^γ", words, form, falls.likelihood(form(falls.width)), 3)
@@ -138,8 +138,8 @@ def _best(
     falls: Falls,
     form: Callable[[Sequence[float], Floats], Floats],
     starts: Sequence[tuple[float, ...]],
-) -> tuple[tuple[float, ...], float]:
-    """The numbers that make the avalanches likeliest, from the best of some starts, and minus the logarithm."""
+) -> tuple[float, ...]:
+    """The numbers that make the avalanches likeliest, from the best of some starts."""
     from scipy.optimize import minimize
 
     def badness(p: Sequence[float]) -> float:
@@ -149,7 +149,7 @@ def _best(
     options = {"maxiter": 4000, "xatol": 1e-6, "fatol": 1e-9}
     found = [minimize(badness, start, method="Nelder-Mead", options=options) for start in starts]
     best = min(found, key=lambda one: float(one.fun))
-    return tuple(map(float, best.x)), float(best.fun)
+    return tuple(map(float, best.x))
 
 
 def _bounded(form: Callable[[Floats], Floats]) -> Callable[[Floats], Floats]:

@@ -82,9 +82,8 @@ def _shares(found: Found) -> Iterator[str]:
         yield "|" + " --- |" * (len(names) + 5)
         for cell in cells:
             counts = ", ".join(f"{n} {name}" for name, n in sorted(cell.outcomes.items()))
-            out = cell.column("out")
             told = [*(f"{v:g}" for v in cell.values), cell.packing, _told(cell), counts]
-            told += [f"{out.mean():.1f}" if len(out) else "", _mean_size(cell)]
+            told += [_out(cell), _mean_size(cell)]
             yield f"| {' | '.join(told)} |"
         yield ""
 
@@ -96,12 +95,9 @@ def _same(found: Found) -> Iterator[str]:
         for part in (part for part, mine in SAME if mine is base):
             name = part.axes[0].partition("=")[0]
             for cell in found[part.name]:
-                out = cell.column("out")
-                mean = f"{out.mean():.1f}" if len(out) else ""
-                yield f"| {part.title} | {name} {cell.values[0]:g} | {cell.packing} | {_told(cell)} | {mean} |"
+                yield f"| {part.title} | {name} {cell.values[0]:g} | {cell.packing} | {_told(cell)} | {_out(cell)} |"
         for cell in _bases(base, found):
-            out = cell.column("out")
-            yield f"| {base.scene}, as in its map | | {cell.packing} | {_told(cell)} | {out.mean():.1f} |"
+            yield f"| {base.scene}, as in its map | | {cell.packing} | {_told(cell)} | {_out(cell)} |"
 
 
 def _bases(base: Part, found: Found) -> Iterator[Cell]:
@@ -135,6 +131,12 @@ def _told(cell: Cell) -> str:
         return "not known"
     low, high = share.interval()
     return f"{share.value:.2f} ({low:.2f} to {high:.2f}), {share.count} runs"
+
+
+def _out(cell: Cell) -> str:
+    """The mean number of grains that left."""
+    out = cell.column("out")
+    return f"{out.mean():.1f}" if len(out) else ""
 
 
 def _mean_size(cell: Cell) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from sandbox.studies.clogging.figure import draw_hazard
 from sandbox.studies.clogging.parts import PARTS, WIDTHS, Part
 from sandbox.studies.clogging.report import Verdict, as_json, as_markdown
 from sandbox.studies.common.folder import machine, write_text
+from sandbox.sweep.outcome import FAILED
 from sandbox.sweep.page import write_page
 from sandbox.sweep.pictures import draw_all
 from sandbox.sweep.summary import Cell, cells
@@ -70,18 +72,16 @@ def study(folder: Path, ways: Ways, parts: Sequence[Part] = PARTS, *, quick: boo
         if not whole:
             break
         write_page(place, asked, found[part.name], draw_all(asked, found[part.name], place), {})
-    outcomes = [
-        outcome for some in found.values() for cell in some for outcome in cell.outcomes.elements()
-    ]
-    failed = outcomes.count("failed")
+    outcomes = sum((cell.outcomes for some in found.values() for cell in some), Counter[str]())
+    runs, failed = outcomes.total(), outcomes[FAILED]
     if not whole:
-        return Study((), len(outcomes), failed, interrupted=True)
+        return Study((), runs, failed, interrupted=True)
     verdicts = judge(found)
     about = {"quick": quick, "seconds": round(time.perf_counter() - began, 1), **machine()}
     about["hazard"] = draw_hazard(found[WIDTHS.name], folder)
     write_text(folder / "results.json", as_json(verdicts, found, about))
     write_text(folder / "clogging.md", as_markdown(verdicts, found, about))
-    return Study(tuple(verdicts), len(outcomes), failed, interrupted=False)
+    return Study(tuple(verdicts), runs, failed, interrupted=False)
 
 
 def judge(found: Found) -> list[Verdict]:

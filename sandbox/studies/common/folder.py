@@ -31,7 +31,7 @@ def require_scipy() -> None:
     """Raise InputError, before any work is done, if SciPy is missing."""
     if importlib.util.find_spec("scipy") is None:
         raise InputError(
-            "this study needs SciPy, which is not installed: "
+            "this needs SciPy, which is not installed: "
             "run: python -m pip install 'auxetic-sandbox[study]'"
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from core.warmup import compile_kernels
@@ -161,9 +161,4 @@ def _compile() -> None:
     sorts = [registry.get(name) for name in registry.names()]
     terms: set[Ingredients] = {scene.ingredients(scene.settings()) for scene in sorts}
     for each in terms:
-        compile_kernels(
-            periodic=each.periodic,
-            rigid=each.rigid,
-            friction=each.friction,
-            gravity=each.gravity,
-        )
+        compile_kernels(**asdict(each))

@@ -249,9 +249,4 @@ def _terms(requests: Sequence[Request]) -> tuple[Ingredients, ...]:
 
 def _warm(sorts: Sequence[Ingredients]) -> None:
     for terms in sorts:
-        compile_kernels(
-            periodic=terms.periodic,
-            rigid=terms.rigid,
-            friction=terms.friction,
-            gravity=terms.gravity,
-        )
+        compile_kernels(**asdict(terms))

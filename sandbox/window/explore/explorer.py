@@ -18,7 +18,6 @@ from sandbox.studies.common.batch import Batch, carry_out_all
 from sandbox.studies.common.folder import require_scipy
 from sandbox.studies.common.pool import Pool
 from sandbox.sweep.outcome import Found, carry_out
-from sandbox.sweep.page import example
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.summary import Cell, cells
 from sandbox.sweep.tables import Tables
@@ -162,5 +161,5 @@ def field_of(cell: Cell) -> Field:
         None if share is None else share.value,
         high - low,
         len(cell.runs),
-        int(example(cell)["row"]),
+        int(cell.example["row"]),
     )
