@@ -1,7 +1,7 @@
 // Looks at every page of a folder in Chromium: npm install --no-save playwright-core axe-core && node .ci/check_pages.mjs FOLDER [PICTURES]
 //
 // No message on the console, no request beyond the folder, no violation found by axe-core, nothing wider than the screen; at the
-// size of a desk, a tablet and a phone, in both themes and languages. Says how soon a player is ready and how many pictures a second it
+// size of a desk, a tablet and a phone, in both themes and in two languages. Says how soon a player is ready and how many pictures a second it
 // draws, which depends on the machine and fails nothing. Pictures of all pages are left in PICTURES. CHROMIUM names the browser.
 
 import { existsSync, mkdirSync, readdirSync, readFileSync } from "node:fs";
