@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from core.files import atomic_write
-from sandbox.player.tape import Tape, increment_of, spaced
+from sandbox.player.tape import Tape, Thinning
 from sandbox.session.frame import Frame
 from sandbox.window.export import free_stem
 from sandbox.window.parts import Silent
@@ -24,8 +24,8 @@ class Reel(Silent):
 
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
-        self._moments: list[Moment] = []
-        self._every = 1
+        self._thinning = Thinning[Moment](MOST, MOST_GRAINS)
+        self._run: tuple[tuple[str, str, int], ...] = ()
         self._serials: tuple[int, ...] = ()
 
     def tick(self, now: float) -> bool:
@@ -44,26 +44,21 @@ class Reel(Silent):
             return
         if len({frame.increment for frame in moment}) != 1:
             return
-        if self._moments and _run_of(moment) != _run_of(self._moments[-1]):
-            self._moments.clear()
-        while self._moments and increment_of(self._moments[-1]) >= increment_of(moment):
-            self._moments.pop()
-        if not self._moments:
-            self._every = 1
-        self._moments.append(moment)
-        grains = sum(frame.grains for frame in moment)
-        while len(self._moments) > max(min(MOST, MOST_GRAINS // max(grains, 1)), 2):
-            self._every *= 2
-            self._moments = [*spaced(self._moments[:-1], self._every, increment_of), moment]
+        run = tuple((frame.scene, frame.packing, frame.seed) for frame in moment)
+        if run != self._run:
+            self._run = run
+            self._thinning.clear()
+        self._thinning.add(moment, sum(frame.grains for frame in moment))
 
     def save(self) -> str:
         """Write the page into the current folder, under a name that is still free; returns what to tell the person."""
         from sandbox.player.page import Look, page
 
-        if not self._moments:
+        moments = self._thinning.moments
+        if not moments:
             return words.NOTHING_KEPT
         tape = Tape()
-        for moment in self._moments:
+        for moment in moments:
             tape.add(moment)
         look = Look(self.stage.renderer.theme.name, self.stage.renderer.view.name)
         name = free_stem(f"sandbox-{tape.last[0].scene}", (".html",)) + ".html"
@@ -73,7 +68,3 @@ class Reel(Silent):
         except OSError as error:
             return words.NOT_SAVED.format(name=name, reason=error.strerror or str(error))
         return words.SAVED.format(name=name)
-
-
-def _run_of(moment: Moment) -> tuple[tuple[str, str, int], ...]:
-    return tuple((frame.scene, frame.packing, frame.seed) for frame in moment)
