@@ -16,7 +16,7 @@ from sandbox.session.commands import Protocol
 from sandbox.sweep.outcome import Found
 from sandbox.sweep.request import Job
 from sandbox.window.explore import explorer
-from sandbox.window.explore.page import Side
+from sandbox.window.explore.side import Side
 from scenes import registry
 from tests.sweep.conftest import fake
 from tests.window.desk import Desk

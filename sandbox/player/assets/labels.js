@@ -16,10 +16,10 @@ function speakAll() {
   $("time-part").setAttribute("aria-label", word("time"));
   $("time").setAttribute("aria-label", word("time"));
   $("plot").setAttribute("aria-label", word("plot_picture", { force: say(run.labels.force), stroke: say(run.labels.stroke) }));
-  for (const [id, key] of [["back", "back"], ["on", "on"]]) {
+  for (const id of ["back", "on"]) {
     $(id).replaceChildren(icon(ICONS[id]));
-    $(id).setAttribute("aria-label", word(key));
-    $(id).title = word(key);
+    $(id).setAttribute("aria-label", word(id));
+    $(id).title = word(id);
   }
   $("view").replaceChildren(...run.views.map((each, k) => element("option", { value: k, textContent: say(each.title), selected: k === state.view })));
   $("speed").setAttribute("aria-label", word("speed"));

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError
@@ -13,6 +11,7 @@ from sandbox.draw.painter import Painter
 from sandbox.session.commands import Protocol
 from sandbox.sweep.request import Axis, Job, Request, check
 from sandbox.window.explore.explorer import Explorer
+from sandbox.window.explore.side import Side
 from sandbox.window.keys import Action
 from sandbox.window.stage import Stage
 from sandbox.words import words
@@ -23,49 +22,7 @@ from scenes.text import message
 FAVOURITES = ("orifice", "auxetic_fraction", "friction", "hand_strength")
 MOST_VALUES, MOST_SEEDS = 12, 200
 BUTTON = "go"
-AROUND = 1.0 / 3.0  # of a default, to either side, at first
 STILL = "shake"  # of a scene that is shaken now and then: here it ends with its first clog
-
-
-@dataclass
-class Side:
-    """An axis as it is asked for."""
-
-    parameter: Parameter
-    low: float
-    high: float
-    count: int = 5
-
-    @classmethod
-    def around(cls, parameter: Parameter) -> Side:
-        """About the default."""
-        default = float(parameter.default)
-        if (parameter.low, parameter.high) == (0.0, 1.0):  # a share: all of it
-            return cls(parameter, 0.0, 1.0)
-        side = cls(parameter, default, default)
-        reach = max(AROUND * abs(default), 2.0 * side.step)
-        side.low, side.high = side.bounded(default - reach), side.bounded(default + reach)
-        return side
-
-    @property
-    def step(self) -> float:
-        """By which its ends are moved: a round number, about a tenth of the default."""
-        size = abs(float(self.parameter.default)) or float(self.parameter.high)
-        power = 10.0 ** math.floor(math.log10(size / 10.0))
-        step = power * (1 if size / 10.0 < 2.0 * power else 2 if size / 10.0 < 5.0 * power else 5)
-        return max(step, 1.0) if self.parameter.kind == "whole number" else step
-
-    def bounded(self, value: float) -> float:
-        """On the grid of steps, within what the parameter may be."""
-        low, high = float(self.parameter.low), float(self.parameter.high)
-        return min(max(float(f"{round(value / self.step) * self.step:.6g}"), low), high)
-
-    def values(self) -> tuple[Value, ...]:
-        """All along the axis, each once."""
-        between = (self.high - self.low) / max(self.count - 1, 1)
-        found = [float(f"{self.low + k * between:.6g}") for k in range(self.count)]
-        whole = self.parameter.kind == "whole number"
-        return tuple(dict.fromkeys(round(v) if whole else v for v in found))
 
 
 class ExplorePage:
