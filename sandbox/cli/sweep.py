@@ -154,7 +154,7 @@ def _draw(folder: Path, request: Request, found: Sequence[Cell], players: bool) 
 
 def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
     """Folder and request, checked, of a new sweep or of one to go on with."""
-    from sandbox.sweep.request import ask
+    from sandbox.sweep.asking import ask
     from sandbox.sweep.tables import is_sweep, read_request
     from scenes import registry
 

@@ -8,16 +8,15 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
-from decimal import Decimal
 from itertools import product
 from typing import Any
 
-from core.errors import InputError, did_you_mean
+from core.errors import InputError
 from sandbox import __version__
 from scenes import registry
-from scenes.parameter import LARGEST_SEED, Value, check_seed, shown
+from scenes.parameter import Value, check_seed
 from scenes.scene import Scene
 
 DATA_VERSION = 2  # of what a run writes down
@@ -184,107 +183,3 @@ def _check_size(request: Request) -> None:
         raise InputError(f"{cells:,} cells are too many: use {MOST_CELLS:,} at most")
     if request.runs > MOST_RUNS:
         raise InputError(f"{request.runs:,} runs are too many: use {MOST_RUNS:,} at most")
-
-
-# From words.
-
-
-def ask(
-    scene: str,
-    vary: Sequence[str],
-    packings: str | None,
-    seeds: str,
-    settings: Mapping[str, object],
-    until: str | None = None,
-    steps: int | None = None,
-) -> Request:
-    """The request that such words make, checked. Raises InputError."""
-    known = registry.get(scene)
-    axes = tuple(axis(text, known) for text in vary)
-    names = [each.name for each in axes]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f"--vary: {name} is varied twice")
-    request = Request(
-        known.name,
-        axes,
-        _kinds(packings, known),
-        seed_range(seeds),
-        tuple((name, _parsed(known, name, value)) for name, value in settings.items()),
-        None if until is None else _endings(until),
-        steps,
-    )
-    check(request)
-    return request
-
-
-def axis(text: str, scene: Scene) -> Axis:
-    """``NAME=A:B:STEP``, both ends included, or ``NAME=v1,v2,…``. Raises InputError."""
-    name, equals, given = (part.strip() for part in text.partition("="))
-    if not (name and equals and given):
-        raise InputError(f"--vary {text}: write NAME=A:B:STEP or NAME=v1,v2,…")
-    words = _span(text, given) if ":" in given else given.split(",")
-    values = tuple(_parsed(scene, name, word) for word in words)
-    if len(set(values)) < len(values):
-        raise InputError(f"--vary {text}: a value comes twice")
-    return Axis(name, values)
-
-
-def _parsed(scene: Scene, name: str, value: object) -> Value:
-    """A value, or what was typed for it, as the parameter has it."""
-    for parameter in scene.parameters:
-        if parameter.name == name:
-            return parameter.parse(value) if isinstance(value, str) else parameter.check(value)
-    names = [p.name for p in scene.parameters]
-    hint = did_you_mean(name, names) or f"; there are: {', '.join(names)}"
-    raise InputError(f"scene {scene.name} has no parameter {name!r}{hint}")
-
-
-def _span(text: str, given: str) -> list[str]:
-    """From A to B, both included, by STEP: in decimals as they are written, so that 0:1:0.1 ends with 1."""
-    try:
-        first, last, step = (Decimal(part.strip()) for part in given.split(":"))
-        count = int((last - first) / step) + 1
-    except (ValueError, ArithmeticError):
-        raise InputError(f"--vary {text}: write A:B:STEP, three numbers, STEP not 0") from None
-    if count < 1 or (last - first) / step < 0:
-        raise InputError(f"--vary {text}: the range is empty, as STEP leads away from B")
-    if count > MOST_CELLS:
-        raise InputError(
-            f"--vary {text}: {count:,} values are too many: use {MOST_CELLS:,} at most"
-        )
-    return [str(first + k * step) for k in range(count)]
-
-
-def seed_range(text: str) -> tuple[int, int]:
-    """``N``: seeds 1 to N; ``A:B``: from A to B, both included. Raises InputError."""
-    words = text.split(":")
-    try:
-        numbers = [int(word) for word in words]
-    except ValueError:
-        numbers = []
-    if len(numbers) not in (1, 2):
-        raise InputError(f"--seeds {shown(text)}: write how many, or FIRST:LAST")
-    first, last = numbers if len(numbers) == 2 else (1, numbers[0])
-    if not 0 <= first <= last <= LARGEST_SEED:
-        raise InputError(f"--seeds {text}: the range is empty, or not within 0 and 2^63 - 1")
-    return first, last
-
-
-def _kinds(text: str | None, scene: Scene) -> tuple[str, ...]:
-    if text is None:
-        return ("mixed" if "mixed" in scene.packings else scene.packings[0],)
-    kinds = tuple(scene.check_packing(word.strip()) for word in text.split(","))
-    if len(set(kinds)) < len(kinds):
-        raise InputError(f"--packing {text}: a packing comes twice")
-    return kinds
-
-
-def _endings(text: str) -> tuple[str, ...]:
-    words = tuple(dict.fromkeys(word.strip() for word in text.split(",")))
-    for word in words:
-        if word not in ENDINGS:
-            raise InputError(
-                f"--until {shown(word)}: use {', '.join(ENDINGS)}{did_you_mean(word, ENDINGS)}"
-            )
-    return words

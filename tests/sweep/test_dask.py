@@ -11,7 +11,7 @@ pytest.importorskip("distributed")
 
 from core.errors import InputError
 from sandbox.sweep import sweep, workers
-from sandbox.sweep.request import ask
+from sandbox.sweep.asking import ask
 from sandbox.sweep.sweep import Ways
 from sandbox.sweep.tables import RUNS, Tables
 from tests.sweep.conftest import fake

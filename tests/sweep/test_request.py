@@ -8,8 +8,9 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli import main as cli
+from sandbox.sweep.asking import ask, axis
 from sandbox.sweep.outcome import AFTER, BEFORE
-from sandbox.sweep.request import Request, ask, axis
+from sandbox.sweep.request import Request
 from scenes import registry
 
 HOPPER = "gravity_hopper"

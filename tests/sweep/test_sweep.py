@@ -21,8 +21,9 @@ from sandbox.cli import main as cli
 from sandbox.session.session import Session
 from sandbox.studies.common.batch import LOST
 from sandbox.sweep import outcome, summary, sweep
+from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
-from sandbox.sweep.request import Job, Request, ask
+from sandbox.sweep.request import Job, Request
 from sandbox.sweep.sweep import Ways
 from sandbox.sweep.tables import AVALANCHES, RUNS, Tables, made, read_request
 from tests.sweep.conftest import fake

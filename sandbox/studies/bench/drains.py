@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from sandbox.studies.bench.report import Row, Section
+from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import carry_out
-from sandbox.sweep.request import Request, ask
+from sandbox.sweep.request import Request
 from sandbox.sweep.sweep import compile_all, sorts
 
 STILL = {"shake": 0.0}

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from sandbox.sweep.request import Request, ask
+from sandbox.sweep.asking import ask
+from sandbox.sweep.request import Request
 
 FIRST = 101
 GRAVITY, PISTON = "gravity_hopper", "hopper"
