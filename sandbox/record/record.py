@@ -41,9 +41,7 @@ class Output:
     fps: float = 30.0
     view: str = "kind"
     theme: str = "dark"
-    every: int = (
-        1  # increments to a frame of the film or the trajectory, or to a picture of the page
-    )
+    every: int = 1  # increments to a frame of film or trajectory, or to a picture of the page
     spelling: Spelling = PLAIN  # of the table
     page: Path | None = None
     trajectory: Path | None = None  # .xyz, .npz or .pvd

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import base64
-import importlib.util
 import re
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
 from sandbox.site.markup import document, link, said
+from sandbox.studies.common.extras import require
 from sandbox.words.words import Section
 
 TITLES = Section("site_studies")
@@ -19,11 +18,7 @@ OUTSIDE = re.compile(r"[a-z]+:|//")  # how a link begins that leaves the gallery
 
 def require_markdown() -> None:
     """Raise InputError, before any work is done, if the studies cannot be made pages."""
-    if importlib.util.find_spec("markdown_it") is None:
-        raise InputError(
-            "the study pages need markdown-it-py, which is not installed: "
-            "run: python -m pip install 'auxetic-sandbox[site]'"
-        )
+    require("the study pages need", "markdown_it", "markdown-it-py", "site")
 
 
 def found() -> dict[str, Path]:

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 from pathlib import Path
 
 from core.errors import InputError
 from core.files import atomic_write
+from sandbox.studies.common.extras import require
 from sandbox.sweep.tables import AVALANCHES, RUNS
 
 
 def require_pyarrow() -> None:
     """Raise InputError, before any work is done, if Parquet cannot be written."""
-    if importlib.util.find_spec("pyarrow") is None:
-        raise InputError(
-            "--parquet needs pyarrow, which is not installed: "
-            "run: python -m pip install 'auxetic-sandbox[parquet]'"
-        )
+    require("--parquet needs", "pyarrow", "pyarrow", "parquet")
 
 
 def write_parquet(folder: Path) -> None:

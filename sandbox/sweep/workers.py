@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from core.errors import InputError
 from sandbox.studies.common.batch import Workers
+from sandbox.studies.common.extras import require
 from sandbox.studies.common.pool import Pool
 
 LOCAL, DASK = "local", "dask://"
@@ -20,11 +20,7 @@ QUEUED = 3  # runs that a cluster is given for each of its threads, so that none
 def check(executor: str) -> str:
     """``executor`` if it is one that there can be. Raises InputError."""
     if executor.startswith(DASK):
-        if importlib.util.find_spec("distributed") is None:
-            raise InputError(
-                f"--executor {executor} needs Dask, which is not installed: "
-                "run: python -m pip install 'auxetic-sandbox[cluster]'"
-            )
+        require(f"--executor {executor} needs", "distributed", "Dask", "cluster")
         _knock(executor)
     elif executor != LOCAL:
         raise InputError(f"--executor {executor}: use local or dask://HOST:PORT")

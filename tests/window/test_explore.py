@@ -58,10 +58,10 @@ def test_a_map_fills_and_a_cell_opens_its_run(desk: Desk, tmp_path: Path) -> Non
     desk.app.tick()
     progress = page.explorer.progress
     assert (progress.done, progress.error) == (40, "")
-    assert {cell.share for cell in progress.fields} == {0.0, 1.0}
+    assert {cell.share for cell in progress.cells} == {0.0, 1.0}
     (folder,) = tmp_path.glob("sandbox-explore-*")
     assert (folder / "runs.csv").read_text().count("\n") == 41
-    cell = progress.fields[7]
+    cell = progress.cells[7]
     desk.click(page._places.cells[cell.values].center)
     panes = desk.app.stage.panes
     assert not desk.app.stage.show_explore

@@ -15,15 +15,13 @@ from sandbox.draw.widgets.look import ring_colour
 from sandbox.words import words
 
 DESIGNED = (640, 400)
-UNSURE = (
-    (0.5, 7.0),
-    (0.3, 14.0),
-)  # widths of an interval from which on a cell is hatched, and how far apart [px]
+# Widths of an interval from which on a cell is hatched, and how far apart [px].
+UNSURE = ((0.5, 7.0), (0.3, 14.0))
 LEGEND_STEPS = 64
 
 
 @dataclass(frozen=True)
-class Field:
+class MapCell:
     """A cell of the map: its place along both axes, the share that stopped, how wide its interval is, runs, and one of them."""
 
     values: tuple[float | int, ...]
@@ -51,7 +49,7 @@ class Shown:
     chosen: str
     axes: tuple[str, str]  # titles, with units
     values: tuple[Sequence[float | int], Sequence[float | int]]
-    fields: Sequence[Field]
+    cells: Sequence[MapCell]
     runs: int  # that a cell is to have
     status: str
 
@@ -140,7 +138,7 @@ def _draw_map(painter: Painter, shown: Shown, box: pygame.Rect, places: ExploreP
     grid = pygame.Rect(box.left + ticks, box.top + line + round(6 * scale), 0, 0)
     grid.size = box.right - grid.left, box.bottom - grid.top - 3 * line - round(22 * scale)
     painter.text(shown.axes[1], box.left, box.top + line // 2, size=SMALL, colour=theme.soft_text)
-    known = {cell.values: cell for cell in shown.fields}
+    known = {cell.values: cell for cell in shown.cells}
     for i, x in enumerate(across):
         left = grid.left + grid.width * i // len(across)
         right = grid.left + grid.width * (i + 1) // len(across)
@@ -172,7 +170,7 @@ def _draw_map(painter: Painter, shown: Shown, box: pygame.Rect, places: ExploreP
     _draw_legend(painter, legend, grid.right)
 
 
-def _draw_cell(painter: Painter, cell: Field | None, rect: pygame.Rect, runs: int) -> None:
+def _draw_cell(painter: Painter, cell: MapCell | None, rect: pygame.Rect, runs: int) -> None:
     theme, scale = painter.theme, painter.scale
     if cell is None or cell.share is None:
         painter.fill(rect, theme.panel)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 import os
 import platform
@@ -16,24 +15,6 @@ from core.files import atomic_write, clear
 from sandbox import __version__
 
 LIBRARIES = ("numpy", "numba", "pymunk", "matplotlib")
-
-
-def require_matplotlib() -> None:
-    """Raise InputError, before any work is done, if figures cannot be drawn."""
-    if importlib.util.find_spec("matplotlib") is None:
-        raise InputError(
-            "figures need matplotlib, which is not installed: "
-            "run: python -m pip install 'auxetic-sandbox[study]'"
-        )
-
-
-def require_scipy() -> None:
-    """Raise InputError, before any work is done, if SciPy is missing."""
-    if importlib.util.find_spec("scipy") is None:
-        raise InputError(
-            "this needs SciPy, which is not installed: "
-            "run: python -m pip install 'auxetic-sandbox[study]'"
-        )
 
 
 def prepare_folder(text: str, inside: str = "runs") -> Path:

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import InputError
-from sandbox.draw.pages.explore_page import Field
+from sandbox.draw.pages.explore_page import MapCell
 from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.folder import require_scipy
+from sandbox.studies.common.extras import require_scipy
 from sandbox.studies.common.pool import Pool
 from sandbox.sweep.outcome import Found, carry_out
 from sandbox.sweep.request import Job, Request
@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 class Progress:
     """What the window may know of it at one moment."""
 
-    fields: tuple[Field, ...] = ()
+    cells: tuple[MapCell, ...] = ()
     done: int = 0
     error: str = ""
     at_work: bool = False
@@ -90,12 +90,12 @@ class Explorer:
             error = f"{type(trouble).__name__}: {trouble}"
         if self._gate is gate:  # nothing else has begun meanwhile
             now = self.progress
-            self.progress = Progress(now.fields, now.done, error)
+            self.progress = Progress(now.cells, now.done, error)
 
     def _carry_out(self, tables: Tables, gate: _Gate) -> None:
         def tell() -> None:
             if self._gate is gate:
-                found = tuple(map(field_of, cells(tables)))
+                found = tuple(map(shown, cells(tables)))
                 self.progress = Progress(found, len(tables.runs), at_work=True)
 
         due = 0.0
@@ -152,11 +152,11 @@ def carry_out_gently(job: Job) -> Found:
     return carry_out(job)
 
 
-def field_of(cell: Cell) -> Field:
+def shown(cell: Cell) -> MapCell:
     """What the map shows of a cell."""
     share = cell.stopped
     low, high = (0.0, 1.0) if share is None else share.interval()
-    return Field(
+    return MapCell(
         cell.values,
         None if share is None else share.value,
         high - low,

@@ -107,10 +107,10 @@ class ExplorePage:
                 if name == BUTTON:
                     self.go_or_stop()
                 return
-        for field in self.explorer.progress.fields:
-            cell = self._places.cells.get(field.values)
-            if cell is not None and cell.collidepoint(place):
-                self._open_run(self.request().job(field.row))
+        for cell in self.explorer.progress.cells:
+            there = self._places.cells.get(cell.values)
+            if there is not None and there.collidepoint(place):
+                self._open_run(self.request().job(cell.row))
                 return
 
     def go_or_stop(self) -> None:
@@ -182,7 +182,7 @@ class ExplorePage:
         progress, request = self.explorer.progress, self.request()
         if progress.error or self._said:
             status = self._said or progress.error
-        elif not progress.fields and not progress.at_work:
+        elif not progress.cells and not progress.at_work:
             status = words.EXPLORE_HINT
         else:
             status = words.EXPLORE_STATUS.format(
@@ -201,7 +201,7 @@ class ExplorePage:
                 self._chosen,
                 (_titled(first.parameter), _titled(second.parameter)),
                 (first.values(), second.values()),
-                progress.fields,
+                progress.cells,
                 self._seeds,
                 status,
             ),
