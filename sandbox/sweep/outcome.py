@@ -20,9 +20,8 @@ from sandbox.session.history import Row
 from sandbox.session.session import Session
 from sandbox.studies.common.clock import clock
 from sandbox.studies.common.pool import Stopped, stopping
+from sandbox.sweep.columns import AFTER, Entry
 from sandbox.sweep.request import CLOG, EMPTY, LOCKED, Job
-from scenes import registry
-from scenes.parameter import Value
 
 SLICE = 400  # force evaluations between two looks at whether to stop: a fraction of a second
 AT_REST = 10  # increments in a row in which no grain moves on: it has come to rest
@@ -39,54 +38,13 @@ CLOGGED, EMPTIED, NEVER, THROUGH, CENSORED, FAILED = (
 STOPPED = (LOCKED, CLOGGED, NEVER)  # by the grains
 DECIDED = (*STOPPED, EMPTIED, THROUGH)  # of the others nobody knows what they would have come to
 
-Cell = Value | str
-# What a row holds beside the parameters of the scene: before them, and after.
-BEFORE = {
-    "row": "number of the run: what play DIR#ROW opens",
-    "seed": "of the random packing",
-    "packing": "kinds of grains",
-}
-AFTER = {
-    "outcome": "locked: all of the hand's strength moves nothing; clogged: an arch holds what is left; emptied: nothing is left "
-    "over the orifice; never started: at rest before a grain had left; ran through: the scripted drive came to its end; "
-    "censored: it was broken off before any of these; failed",
-    "why": "it was broken off or failed",
-    "initial": "grains at the start",
-    "out": "grains that left",
-    "left": "grains in the scene at the end",
-    "arch": "grains of the arch at the end; empty: none",
-    "avalanches": "rows in avalanches.csv",
-    "increments": "of the run",
-    "peak_force": "on the handle, against the drive where there is one [k R]",
-    "mean_force": "the same, mean over the increments [k R]",
-    "converged": "share of increments relaxed to the tolerance",
-    "friction_error": "share of contacts that pull harder than friction allows, mean over the increments",
-    "version": "of the program",
-    "kernels": "hash of the sources of the physics",
-    "python": "version",
-    "numpy": "version",
-    "numba": "version",
-    "state": "hash of every bit of the state at the end",
-    "seconds": "of one core; the only column that another run of the same row may change",
-}
-AVALANCHE = {
-    "row": "of runs.csv",
-    "avalanche": "its number in the run, from 1",
-    "seed": "of the random packing",
-    "packing": "kinds of grains",
-    "size": "grains that left in it: from one clog, or the start, to the next clog, or the end of the run",
-    "ended": "clogged, or the outcome of the run: a size that did not end in a clog is a lower bound",
-    "arch": "grains of the arch that ended it; empty: none",
-    "increments": "of the run by then",
-}
-
 
 @dataclass(frozen=True)
 class Found:
     """A row of runs.csv and rows of avalanches.csv, without the axes."""
 
-    run: Mapping[str, Cell]
-    avalanches: tuple[Mapping[str, Cell], ...] = ()
+    run: Mapping[str, Entry]
+    avalanches: tuple[Mapping[str, Entry], ...] = ()
 
 
 @dataclass
@@ -97,7 +55,7 @@ class Watch:
     resting: int = 0  # increments in a row
     begun: int = 0  # grains out when the present avalanche began
     held: bool = False  # something holds the grains back
-    avalanches: list[dict[str, Cell]] = field(default_factory=list)
+    avalanches: list[dict[str, Entry]] = field(default_factory=list)
     forces: list[float] = field(default_factory=list)
 
     @property
@@ -217,7 +175,7 @@ def described(job: Job, watch: Watch, seconds: float) -> Found:
     arch = watch.arch if outcome in STOPPED else None
     reasons = run.history.column("stop_reason")[1:]
     beyond = run.history.column("beyond_cone")[1:]
-    told: dict[str, Cell] = {
+    told: dict[str, Entry] = {
         "outcome": outcome,
         "why": why,
         "initial": run.course.initial,
@@ -234,7 +192,7 @@ def described(job: Job, watch: Watch, seconds: float) -> Found:
         "state": run.state_hash(),
         "seconds": seconds,
     }
-    common: dict[str, Cell] = {"row": job.row, "seed": job.seed, "packing": job.packing}
+    common: dict[str, Entry] = {"row": job.row, "seed": job.seed, "packing": job.packing}
     return Found(
         {**common, **job.settings, **told},
         tuple({**common, **avalanche} for avalanche in watch.avalanches),
@@ -243,8 +201,8 @@ def described(job: Job, watch: Watch, seconds: float) -> Found:
 
 def failure(job: Job, reason: str) -> Found:
     """The row of a run that came to nothing."""
-    nothing: dict[str, Cell] = dict.fromkeys(AFTER, "")
-    told: dict[str, Cell] = {
+    nothing: dict[str, Entry] = dict.fromkeys(AFTER, "")
+    told: dict[str, Entry] = {
         **nothing,
         "outcome": FAILED,
         "why": reason,
@@ -253,16 +211,8 @@ def failure(job: Job, reason: str) -> Found:
     return Found({"row": job.row, "seed": job.seed, "packing": job.packing, **job.settings, **told})
 
 
-def columns(scene: str) -> dict[str, str]:
-    """Of runs.csv: names and what they mean, with units."""
-    parameters = {
-        p.name: f"{p.help} [{p.unit}]" if p.unit else p.help for p in registry.get(scene).parameters
-    }
-    return {**BEFORE, **parameters, **AFTER}
-
-
 @cache
-def versions() -> dict[str, Cell]:
+def versions() -> dict[str, Entry]:
     """What the bits of a run depend on, beside the processor."""
     return {
         "version": __version__,
@@ -273,6 +223,6 @@ def versions() -> dict[str, Cell]:
     }
 
 
-def _number(value: float) -> Cell:
+def _number(value: float) -> Entry:
     """Nothing that is not finite reaches a table."""
     return value if math.isfinite(value) else ""

@@ -22,7 +22,8 @@ from core.errors import InputError
 from sandbox import __version__
 from sandbox.interrupts import deferred
 from sandbox.studies.common.folder import machine, prepare_folder, write_text
-from sandbox.sweep.outcome import AVALANCHE, FAILED, Found, columns
+from sandbox.sweep.columns import AVALANCHE, columns
+from sandbox.sweep.outcome import FAILED, Found
 from sandbox.sweep.request import Job, Request
 
 FORMAT, VERSION = "auxetic-sandbox sweep", 1

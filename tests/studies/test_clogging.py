@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,10 +13,10 @@ pytest.importorskip("matplotlib")
 
 from sandbox.cli import main as cli
 from sandbox.studies.clogging import parts, study
-from sandbox.sweep import outcome, sweep
+from sandbox.sweep import sweep
 from sandbox.sweep.outcome import CLOGGED, EMPTIED, Found
 from sandbox.sweep.request import Job
-from tests.sweep.conftest import in_threads
+from tests.sweep.conftest import in_threads, invented
 
 __all__ = ["in_threads"]
 
@@ -31,25 +30,7 @@ def drain(job: Job) -> Found:
     )
     rng = np.random.default_rng([job.seed, round(1e6 * width), job.row])
     size = int(rng.geometric(min(0.9, np.exp(0.5 - 0.3 * width**2))))
-    ended = CLOGGED if size < 200 else EMPTIED
-    row: dict[str, Any] = {"row": job.row, "seed": job.seed, "packing": job.packing}
-    fall = {
-        **row,
-        "avalanche": 1,
-        "size": min(size, 200),
-        "ended": ended,
-        "arch": "",
-        "increments": 5,
-    }
-    told: dict[str, Any] = {
-        **row,
-        **settings,
-        **dict.fromkeys(outcome.AFTER, 0),
-        "why": "",
-        "arch": "",
-    }
-    told |= {"outcome": ended, "out": min(size, 200)}
-    return Found(told, (fall,))
+    return invented(job, CLOGGED if size < 200 else EMPTIED, min(size, 200))
 
 
 def test_every_part_can_be_asked_and_judging_seeds_are_apart() -> None:

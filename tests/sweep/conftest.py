@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from sandbox.studies.common.batch import Workers
-from sandbox.sweep import outcome, sweep
+from sandbox.sweep import sweep
+from sandbox.sweep.columns import AFTER
 from sandbox.sweep.outcome import CLOGGED, EMPTIED, Found
 from sandbox.sweep.request import Job
 
@@ -19,9 +20,14 @@ def fake(job: Job) -> Found:
     """The wider, the more leave."""
     wide = float(job.settings["orifice"]) > 2.0
     ended, out = (EMPTIED, 9) if wide else (CLOGGED, job.seed)
+    return invented(job, ended, out)
+
+
+def invented(job: Job, ended: str, out: int) -> Found:
+    """A run of one avalanche that ended so."""
     row: dict[str, Any] = {"row": job.row, "seed": job.seed, "packing": job.packing}
     fall = {**row, "avalanche": 1, "size": out, "ended": ended, "arch": "", "increments": 5}
-    row |= {**job.settings, **dict.fromkeys(outcome.AFTER, 0), "why": "", "arch": ""}
+    row |= {**job.settings, **dict.fromkeys(AFTER, 0), "why": "", "arch": ""}
     return Found({**row, "outcome": ended, "out": out, "seconds": job.row}, (fall,))
 
 

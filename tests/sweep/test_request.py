@@ -9,7 +9,7 @@ import pytest
 from core.errors import InputError
 from sandbox.cli import main as cli
 from sandbox.sweep.asking import ask, axis
-from sandbox.sweep.outcome import AFTER, BEFORE
+from sandbox.sweep.columns import AFTER, BEFORE
 from sandbox.sweep.request import Request
 from scenes import registry
 
