@@ -34,7 +34,7 @@ def pytest_xdist_setupnodes(config: pytest.Config, specs: Sequence[object]) -> N
         return
     reporter = config.pluginmanager.get_plugin("terminalreporter")
     if reporter is not None:
-        reporter.write_line("kernels are compiled first")
+        reporter.write_line("kernels are compiled first, which takes a minute or two")
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(len(specs), context) as pool:
         done = [pool.submit(solving.compile_kernels, **asdict(sort)) for sort in sorts_of_kernels()]
