@@ -65,7 +65,9 @@ def _of(frame: Frame) -> str:
     if not frame.events:
         said.append(PLAYER["story_quiet"])
     if frame.notices:
-        said.append(PLAYER["story_end"].format(text=_sentence(words.say(frame.notices[-1]))))
+        first, *others = (_sentence(words.say(notice)) for notice in frame.notices)
+        text = " ".join([first, *map(_capital, others)])
+        said.append(PLAYER["story_end"].format(text=text))
     return f"{_capital(name_of(frame))}: {' '.join(said)}"
 
 

@@ -20,7 +20,7 @@ from sandbox.player.coding import Writer, read, unpacked
 from sandbox.player.kept import QUANTITIES
 from sandbox.player.page import SCRIPTS, Look, page
 from sandbox.player.pieces import asset
-from sandbox.player.story import PLAYER
+from sandbox.player.story import PLAYER, story
 from sandbox.player.tape import Tape
 from sandbox.record.record import in_step
 from sandbox.session.commands import Protocol
@@ -91,6 +91,12 @@ def test_what_is_read_back_is_what_was_shown(moments: list[list[Frame]]) -> None
         curve = read(blocks, pane["force"])[:, 0]
         last = moments[-1][number].curve_force
         assert np.abs(curve - last).max() <= np.ptp(last) / 4000
+
+
+def test_the_story_ends_with_all_that_was_said(moments: list[list[Frame]]) -> None:
+    said = ("regular: wider", "auxetic: narrower")
+    told = story(taped([[replace(moments[0][0], notices=said)]]))
+    assert told[1].endswith("At the end: regular: wider. Auxetic: narrower.")
 
 
 def test_numbers_of_any_size_and_gaps_come_back() -> None:
