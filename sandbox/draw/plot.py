@@ -97,6 +97,12 @@ def unit_of(label: str) -> str:
     return label.rpartition("[")[2].removesuffix("]") if label.endswith("]") else ""
 
 
+def value_digits(label: str, forces: Sequence[Floats], spread: float) -> int:
+    """Decimals of a present value on an axis that long: none where things are counted."""
+    counted = not unit_of(label) and all(np.array_equal(one, np.rint(one)) for one in forces)
+    return 0 if counted else decimals_for(spread) + 2
+
+
 def draw_plot(
     painter: Painter,
     rect: pygame.Rect,
@@ -125,7 +131,7 @@ def draw_plot(
     force_digits = decimals_for(force_ticks[1] - force_ticks[0] if len(force_ticks) > 1 else 1.0)
     names = [number(value, force_digits) for value in force_ticks]
     gutter = max((type_.width(name, SMALL) for name in names), default=0) + 2 * pad
-    digits = decimals_for(axes[3] - axes[2]) + 2
+    digits = value_digits(label, [force for _, force in parts], axes[3] - axes[2])
     line = rect.top + pad // 2 + type_.height(BODY) // 2 + round(2 * scale)
     right = rect.right - 2 * pad
     _draw_headline(painter, rect, label, curves, digits, gutter, line)

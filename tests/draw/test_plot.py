@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from sandbox.draw.painter import dashed
-from sandbox.draw.plot import Curve, finite_part, limits, thinned
+from sandbox.draw.plot import Curve, finite_part, limits, thinned, value_digits
 from sandbox.draw.render import Renderer
 from sandbox.session.frame import Ahead, Frame
 from tests.draw.frames import curve, intruder_frame
@@ -64,6 +64,13 @@ def test_axes_hold_the_curve_and_zero(sign: float) -> None:
     assert bottom <= min((sign * force).min(), 0.0) + 1e-9
     assert top >= max((sign * force).max(), 0.0) - 1e-9
     assert limits([]) == (0.0, 1.0, 0.0, 0.01)
+
+
+def test_what_is_counted_has_no_decimals() -> None:
+    whole, broken = np.array([0.0, 2.0]), np.array([0.0, 2.5])
+    assert value_digits("grains that have left", [whole, whole], 2.0) == 0
+    assert value_digits("grains that have left", [whole, broken], 2.0) == 2
+    assert value_digits("force on the piston [k R]", [whole], 2.0) == 2
 
 
 @pytest.mark.parametrize("points", [0, 1, 2, 3, 5000])
