@@ -47,7 +47,8 @@ def lamp(frame: Frame, theme: Theme) -> Lamp:
     elif estimated:
         bound = percent(max(frame.force_error, 1e-6), ONE_DIGIT)
         usual = percent(max(frame.usual_error, 1e-6), ONE_DIGIT)
-        error = words.HANDLE_FORCE_ERROR.format(usual=usual, error=bound)
+        said = words.HANDLE_FORCE_WITHIN if usual == bound else words.HANDLE_FORCE_ERROR
+        error = said.format(usual=usual, error=bound)
         within = words.WITHIN.format(error=bound)
     else:
         bound = percent(max(frame.residual, 1e-6))

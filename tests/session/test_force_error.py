@@ -78,6 +78,8 @@ def test_lamp_says_the_estimate_and_turns_amber_where_it_is_rough() -> None:
     assert fine.error == "force usually within 0.7 %, nine of ten within 3 %"
     assert fine.short.endswith("within 3 %")
     assert fine.colour == DARK.good
+    alike = lamp(replace(frame, busy=False, usual_error=0.0, force_error=1e-9), DARK)
+    assert alike.error == "force within 0.0001 %"
     rough = lamp(replace(frame, busy=False, usual_error=0.1, force_error=1.5 * ROUGH), DARK)
     assert rough.colour == DARK.working
     for unknown in (math.nan, 3.0):
