@@ -106,6 +106,7 @@ def along(axes: Any, request: Request, lines: Sequence[Group]) -> None:
             capsize=3.0,
             label=name,
         )
+    axes.locator_params(axis="x", nbins=5)  # more would touch each other
     axes.set(xlabel=axis_label(request, 0), ylabel=STOPS, ylim=(-0.03, 1.03))
     if len(lines) > 1:
         axes.legend()

@@ -118,7 +118,8 @@ def _mean(values: Floats) -> str:
 def _totals(request: Request, found: Iterable[Cell]) -> Iterator[str]:
     rows = [row for cell in found for row in cell.runs]
     seconds = sum(float(row["seconds"]) for row in rows if row["seconds"] != "")
-    yield f"{len(rows)} of {request.runs} runs, {seconds / 60.0:.1f} minutes of one core"
+    took = f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.1f} minutes"
+    yield f"{len(rows)} of {request.runs} runs, {took} of one core"
     for outcome, words in (
         (CENSORED, "were broken off before their outcome was known: not counted in the shares"),
         (FAILED, "failed: the same command tries them again"),
