@@ -67,8 +67,10 @@ def worst(frames: Sequence[Frame], theme: Theme) -> Frame:
     """The frame that is to be believed least."""
     order = [theme.good, theme.working, theme.bad]
 
-    def doubt(frame: Frame) -> tuple[int, float]:
-        residual = frame.residual if math.isfinite(frame.residual) else 0.0
-        return order.index(lamp(frame, theme).colour), residual
+    def doubt(frame: Frame) -> tuple[int, float, float]:
+        error, residual = (
+            value if math.isfinite(value) else 0.0 for value in (frame.force_error, frame.residual)
+        )
+        return order.index(lamp(frame, theme).colour), error, residual
 
     return max(frames, key=doubt)

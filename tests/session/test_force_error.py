@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.relaxation import StopReason
-from sandbox.draw.lamp import ROUGH, lamp
+from sandbox.draw.lamp import ROUGH, lamp, worst
 from sandbox.draw.theme import DARK
 from sandbox.session.commands import Erase, Protocol
 from sandbox.session.history import History, Row
@@ -86,6 +86,15 @@ def test_lamp_says_the_estimate_and_turns_amber_where_it_is_rough() -> None:
         assert lamp(replace(frame, busy=False, force_error=unknown), DARK).error.startswith(
             words.FORCE_ERROR.split("{", maxsplit=1)[0]
         )
+
+
+def test_of_several_that_are_settled_the_least_exact_is_named() -> None:
+    frame = replace(intruder_frame(6), busy=False, tolerance=0.01, stop_reason="converged")
+    exact, rough = (
+        replace(frame, residual=residual, usual_error=0.1 * error, force_error=error)
+        for residual, error in ((0.009, 0.2), (0.001, 0.4))
+    )
+    assert worst([exact, rough], DARK) is rough
 
 
 def test_scenes_that_the_study_has_seen_say_how_accurate_they_are() -> None:
