@@ -63,6 +63,10 @@ def _run(words: list[str]) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return OK
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            name = arguments.one_line(f"error: this name is too long: {error.filename}")
+            print(name, file=sys.stderr)
+            return USER_MISTAKE
         if error.errno not in NO_ROOM:
             raise
         where = f" for {error.filename}" if error.filename else ""

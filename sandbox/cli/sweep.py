@@ -160,7 +160,7 @@ def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
 
     if is_sweep(options.scene):
         for name in ASKING:
-            if getattr(options, name):
+            if getattr(options, name) not in (None, []):
                 raise InputError(
                     f"--{name}: the folder brings its own; only --more-seeds changes it"
                 )
@@ -169,13 +169,13 @@ def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
     if Path(options.scene).is_dir():
         raise InputError(f"{options.scene}: this folder holds no sweep")
     registry.get(options.scene)
-    if options.out is None:
+    if not options.out:
         raise InputError("--out DIR is needed: where shall the tables go?")
     request = ask(
         options.scene,
         options.vary,
         options.packing,
-        options.seeds or "10",
+        "10" if options.seeds is None else options.seeds,
         arguments.assignments(options.set),
         options.until,
         options.steps,

@@ -276,7 +276,7 @@ def _session(options: argparse.Namespace) -> Session:
     row = _row(options.scene)
     if row is not None:
         for name in ("packing", "seed", "set", "compare"):
-            if getattr(options, name):
+            if getattr(options, name) not in (None, []):
                 raise InputError(f"--{name}: a run of a sweep brings its own; leave this out")
         return Session(row.job.scene, row.job.packing, row.job.seed, row.job.settings)
     if _is_file(options.scene):

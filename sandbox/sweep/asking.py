@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
 from core.errors import InputError, did_you_mean
-from sandbox.sweep.request import ENDINGS, MOST_CELLS, Axis, Request, check
+from sandbox.sweep.request import ENDINGS, MOST_CELLS, Axis, Request, axis_of, check, parsed
 from scenes import registry
-from scenes.parameter import LARGEST_SEED, Value, shown
+from scenes.parameter import LARGEST_SEED, shown
 from scenes.scene import Scene
 
 
@@ -33,7 +33,7 @@ def ask(
         axes,
         _kinds(packings, known),
         seed_range(seeds),
-        tuple((name, _parsed(known, name, value)) for name, value in settings.items()),
+        tuple((name, parsed(known, name, value)) for name, value in settings.items()),
         None if until is None else _endings(until),
         steps,
     )
@@ -46,37 +46,25 @@ def axis(text: str, scene: Scene) -> Axis:
     name, equals, given = (part.strip() for part in text.partition("="))
     if not (name and equals and given):
         raise InputError(f"--vary {text}: write NAME=A:B:STEP or NAME=v1,v2,…")
-    words = _span(text, given) if ":" in given else given.split(",")
-    values = tuple(_parsed(scene, name, word) for word in words)
-    if len(set(values)) < len(values):
+    found = axis_of(scene, name, _span(text, given) if ":" in given else given.split(","))
+    if len(set(found.values)) < len(found.values):
         raise InputError(f"--vary {text}: a value comes twice")
-    return Axis(name, values)
-
-
-def _parsed(scene: Scene, name: str, value: object) -> Value:
-    """A value, or what was typed for it, as the parameter has it."""
-    for parameter in scene.parameters:
-        if parameter.name == name:
-            return parameter.parse(value) if isinstance(value, str) else parameter.check(value)
-    names = [p.name for p in scene.parameters]
-    hint = did_you_mean(name, names) or f"; there are: {', '.join(names)}"
-    raise InputError(f"scene {scene.name} has no parameter {name!r}{hint}")
+    return found
 
 
 def _span(text: str, given: str) -> list[str]:
     """From A to B, both included, by STEP: in decimals as they are written, so that 0:1:0.1 ends with 1."""
     try:
         first, last, step = (Decimal(part.strip()) for part in given.split(":"))
-        count = int((last - first) / step) + 1
+        length = (last - first) / step
+        many = length >= MOST_CELLS
     except (ValueError, ArithmeticError):
         raise InputError(f"--vary {text}: write A:B:STEP, three numbers, STEP not 0") from None
-    if count < 1 or (last - first) / step < 0:
+    if length < 0:
         raise InputError(f"--vary {text}: the range is empty, as STEP leads away from B")
-    if count > MOST_CELLS:
-        raise InputError(
-            f"--vary {text}: {count:,} values are too many: use {MOST_CELLS:,} at most"
-        )
-    return [str(first + k * step) for k in range(count)]
+    if many:
+        raise InputError(f"--vary {text}: too many values: use {MOST_CELLS:,} at most")
+    return [str(first + k * step) for k in range(int(length) + 1)]
 
 
 def seed_range(text: str) -> tuple[int, int]:

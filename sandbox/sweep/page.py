@@ -106,7 +106,7 @@ def _cell(folder: Path, cell: Cell, players: Mapping[int, str]) -> str:
     what = (
         f"<code>{escape(command)}</code>"
         if where is None
-        else f'<a href="{where}">{row["outcome"]}</a>'
+        else f'<a href="{where}">{escape(row["outcome"])}</a>'
     )
     share = cell.stopped
     if share is None:

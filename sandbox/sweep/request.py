@@ -8,15 +8,15 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
 
-from core.errors import InputError
+from core.errors import InputError, did_you_mean
 from sandbox import __version__
 from scenes import registry
-from scenes.parameter import Value, check_seed
+from scenes.parameter import Value, check_seed, shown
 from scenes.scene import Scene
 
 DATA_VERSION = 2  # of what a run writes down
@@ -129,13 +129,13 @@ class Request:
     def of(cls, data: Mapping[str, Any]) -> Request:
         """What ``data`` wrote. Raises InputError if it is none."""
         try:
-            until = data["until"]
+            until, scene = data["until"], registry.get(str(data["scene"]))
             request = cls(
-                str(data["scene"]),
-                tuple(Axis(str(axis["name"]), tuple(axis["values"])) for axis in data["axes"]),
+                scene.name,
+                tuple(axis_of(scene, axis["name"], axis["values"]) for axis in data["axes"]),
                 tuple(map(str, data["packings"])),
                 (check_seed(data["seeds"][0]), check_seed(data["seeds"][1])),
-                tuple(data["settings"].items()),
+                tuple((name, parsed(scene, name, v)) for name, v in data["settings"].items()),
                 None if until is None else tuple(map(str, until)),
                 data["steps"],
             )
@@ -158,8 +158,16 @@ def longest(scene: Scene, settings: Mapping[str, Value]) -> int:
 
 
 def check(request: Request) -> None:
-    """Raises InputError for a request that cannot be carried out, of too many runs, or with a cell that its scene refuses."""
+    """Raises InputError for a request that cannot be carried out, of no or too many runs, or whose scene refuses a cell."""
     scene = registry.get(request.scene)
+    names = [axis.name for axis in request.axes]
+    for several in (names, request.packings, *(axis.values for axis in request.axes)):
+        if len(set(several)) < len(several):
+            raise InputError("an axis, a packing or a value comes twice")
+    if request.steps is not None and not _is_count(request.steps):
+        raise InputError(f"steps must be a whole number from 1, not {shown(request.steps)}")
+    if unknown := set(request.until or ()) - set(ENDINGS):
+        raise InputError(f"nothing ends by {shown(min(unknown))}: use {', '.join(ENDINGS)}")
     _check_size(request)
     for packing in request.packings:
         scene.check_packing(packing)
@@ -177,8 +185,31 @@ def check(request: Request) -> None:
             raise InputError(f"at {where}: {error}") from None
 
 
+def parsed(scene: Scene, name: str, value: object) -> Value:
+    """A value, or what was typed for it, as the parameter has it. Raises InputError."""
+    for parameter in scene.parameters:
+        if parameter.name == name:
+            return parameter.parse(value) if isinstance(value, str) else parameter.check(value)
+    names = [p.name for p in scene.parameters]
+    hint = did_you_mean(name, names) or f"; there are: {', '.join(names)}"
+    raise InputError(f"scene {scene.name} has no parameter {name!r}{hint}")
+
+
+def axis_of(scene: Scene, name: str, values: Sequence[object]) -> Axis:
+    """An axis of such values. Raises InputError."""
+    return Axis(name, tuple(parsed(scene, name, value) for value in values))
+
+
+def _is_count(value: object) -> bool:
+    return type(value) is int and value > 0
+
+
 def _check_size(request: Request) -> None:
     cells = math.prod(len(axis.values) for axis in request.axes)
+    if request.runs < 1:
+        raise InputError(
+            "no runs: an axis without values, no packing, or a range of seeds without any"
+        )
     if cells > MOST_CELLS:
         raise InputError(f"{cells:,} cells are too many: use {MOST_CELLS:,} at most")
     if request.runs > MOST_RUNS:

@@ -1,8 +1,8 @@
 """The folder of a sweep: its request, and two tables that grow by a row as a run ends, whatever may end the program.
 
 A run's avalanches are written before its own row, so that a row in runs.csv says that all of it is there. What a kill has left
-of a line, avalanches without their run, and runs that failed are dropped when the folder is opened again. At the end both
-tables are written anew in the order of the request.
+of a line, what somebody has made of one, avalanches without their run, runs without their avalanches, and runs that failed are
+dropped when the folder is opened again, and made anew. At the end both tables are written in the order of the request.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,16 +21,23 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from core.errors import InputError
+from core.files import is_special
 from sandbox import __version__
 from sandbox.interrupts import deferred
 from sandbox.studies.common.folder import machine, prepare_folder, write_text
 from sandbox.sweep.columns import AVALANCHE, columns
-from sandbox.sweep.outcome import FAILED, Found
+from sandbox.sweep.outcome import CENSORED, DECIDED, FAILED, Found
 from sandbox.sweep.request import Job, Request
+from scenes.parameter import shown
 
 FORMAT, VERSION = "auxetic-sandbox sweep", 1
 ASKED, RUNS, AVALANCHES, LOCK = "sweep.json", "runs.csv", "avalanches.csv", ".lock"
 Row = Mapping[str, Any]  # as a file has it: text by column
+COUNTS = ("row", "avalanche", "size", "initial", "out", "left", "avalanches", "increments")
+NUMBERS = ("peak_force", "mean_force", "converged", "friction_error", "seconds", "arch")
+NEEDED = ("increments", "out", "avalanches")  # of a run that has not failed
+LONGEST = 12  # digits of a count
+_COUNT = re.compile(f"[0-9]{{0,{LONGEST}}}")
 
 
 def is_sweep(text: str) -> bool:
@@ -42,16 +51,16 @@ def read_request(folder: Path) -> Request:
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         if data["format"] != FORMAT or data["version"] != VERSION:
-            raise InputError(f"{path}: this is no sweep of this program")
+            raise InputError("this is no sweep of this program")
         request, key = Request.of(data["request"]), str(data["key"])
+        made = str(data.get("versions", {}).get("auxetic-sandbox", "?"))
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError(f"{path}: damaged ({error!r})") from None
     if key != request.key():
-        made = data.get("versions", {}).get("auxetic-sandbox", "?")
         raise InputError(
             f"{folder} was begun by version {made}, whose scenes were others: begin a new folder with version {__version__}"
         )
@@ -70,11 +79,11 @@ class Made:
 def made(folder: Path, text: str) -> Made:
     """The run that a row of a folder's table stands for. Raises InputError if there is none."""
     request = read_request(folder)
-    if not text.isdecimal():
-        raise InputError(f"{folder}#{text}: after the # comes the number of a row")
+    if not text.isdecimal() or len(text) > LONGEST:
+        raise InputError(f"{folder}#{shown(text)}: after the # comes the number of a row")
     job = request.job(int(text))
     for row in read_rows(folder / RUNS, list(columns(request.scene))):
-        if row["row"] == text and row["outcome"] != FAILED:
+        if int(row["row"]) == job.row and row["outcome"] != FAILED:
             return Made(job, int(row["increments"]), row["state"])
     return Made(job, job.steps)
 
@@ -91,6 +100,9 @@ class Tables:
             self._lock.acquire(timeout=0)
         except Timeout:
             raise InputError(f"{folder}: another program is at work on this sweep") from None
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise InputError(f"{folder / LOCK}: {reason}") from None
         self._run_columns = list(columns(request.scene))
         self._avalanche_columns = [*AVALANCHE, *(axis.name for axis in request.axes)]
         self.runs = {
@@ -101,8 +113,11 @@ class Tables:
         self.avalanches: dict[int, list[Row]] = {}
         for row in read_rows(folder / AVALANCHES, self._avalanche_columns):
             mine = self.avalanches.setdefault(int(row["row"]), [])
-            if int(row["row"]) in self.runs and int(row["avalanche"]) == len(mine) + 1:
+            if int(row["row"]) in self.runs and row["avalanche"] == str(len(mine) + 1):
                 mine.append(row)
+        for number, row in [*self.runs.items()]:
+            if len(self.avalanches.get(number, ())) != int(row["avalanches"]):
+                del self.runs[number]
         self._write_request()
         self.write_all()
 
@@ -144,7 +159,12 @@ class Tables:
 
 
 def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
-    """The whole lines of a table that has these columns. Raises InputError for one with others; none there is an empty one."""
+    """The whole lines of a table that has these columns, without those that no sweep has written: they are made again.
+
+    Raises InputError for a table with other columns, and for what is no file; none there is an empty one.
+    """
+    if is_special(path):
+        raise InputError(f"{path}: this is no file")
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
     except FileNotFoundError:
@@ -152,13 +172,34 @@ def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
     except OSError as error:
         raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     whole = text[: text.rfind("\n") + 1]
-    rows = list(csv.reader(io.StringIO(whole, newline="")))
+    try:
+        rows = list(csv.reader(io.StringIO(whole, newline="")))
+    except csv.Error as error:
+        raise InputError(f"{path}: damaged ({error})") from None
     if not rows:
         return []
     if rows[0] != list(names):
         raise InputError(f"{path}: these are not the columns of this sweep; begin a new folder")
     found = [dict(zip(names, row, strict=True)) for row in rows[1:] if len(row) == len(names)]
-    return [row for row in found if row["row"].isdigit()]
+    return [row for row in found if _is_sound(row)]
+
+
+def _is_sound(row: Row) -> bool:
+    """Are the numbers of a row such, and is its outcome one?"""
+    if not row["row"].strip("0") or row.get("outcome", FAILED) not in (*DECIDED, CENSORED, FAILED):
+        return False
+    if row.get("outcome", FAILED) != FAILED and not all(row[name] for name in NEEDED):
+        return False
+    counts = (row.get(name, "") for name in COUNTS)
+    numbers = (row.get(name, "") for name in NUMBERS)
+    return all(_COUNT.fullmatch(text) for text in counts) and all(map(_is_number, numbers))
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text or 0.0))
+    except ValueError:
+        return False
 
 
 def as_read(row: Mapping[str, object]) -> Row:

@@ -27,7 +27,7 @@ def invented(job: Job, ended: str, out: int) -> Found:
     """A run of one avalanche that ended so."""
     row: dict[str, Any] = {"row": job.row, "seed": job.seed, "packing": job.packing}
     fall = {**row, "avalanche": 1, "size": out, "ended": ended, "arch": "", "increments": 5}
-    row |= {**job.settings, **dict.fromkeys(AFTER, 0), "why": "", "arch": ""}
+    row |= {**job.settings, **dict.fromkeys(AFTER, 0), "why": "", "arch": "", "avalanches": 1}
     return Found({**row, "outcome": ended, "out": out, "seconds": job.row}, (fall,))
 
 

@@ -54,6 +54,7 @@ def test_no_parameter_is_called_as_a_column(name: str) -> None:
         (["--vary", "orifice=2:3:0"], "STEP not 0"),
         (["--vary", "orifice=2:99:1"], "must lie between"),
         (["--vary", "fall=0.01:0.3:0.000000001"], "too many"),
+        (["--vary", "orifice=0:1e99999:1"], "too many"),
         (["--vary", "orifice=2,2"], "a value comes twice"),
         (["--vary", "orifice=2", "--set", "orifice=3"], "both varied and set"),
         (["--vary", "orifice=2,8", "--set", "width=12"], "at orifice=8: the orifice is wider"),
@@ -66,6 +67,9 @@ def test_no_parameter_is_called_as_a_column(name: str) -> None:
         (["--executor", "dask://nowhere"], "dask://HOST:PORT"),
         (["--executor", "dask://127.0.0.1:1"], "no scheduler answers there"),
         (["--jobs", "0"], "--jobs"),
+        (["--seeds", ""], "write how many"),
+        (["--out", ""], "where shall the tables go?"),
+        (["--out", 300 * "x"], "too long"),
     ],
 )
 def test_mistakes_are_one_line_before_any_work(
@@ -86,3 +90,23 @@ def test_mistakes_are_one_line_before_any_work(
 def test_a_row_that_is_not_there() -> None:
     with pytest.raises(InputError, match="use 1 to 10"):
         ask(HOPPER, [], None, "10", {}).job(11)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"steps": "x"},
+        {"steps": -1},
+        {"seeds": [5, 1]},
+        {"packings": []},
+        {"packings": ["mixed", "mixed"]},
+        {"until": ["nonsense"]},
+        {"scene": 3},
+        {"settings": {"grains": "many"}},
+        *({"axes": [{"name": "orifice", "values": v}]} for v in ([], ["x"], [[1]], [10**400])),
+        {"axes": 2 * [{"name": "orifice", "values": [2.0]}]},
+    ],
+)
+def test_a_request_that_somebody_has_changed_is_refused(changed: dict[str, object]) -> None:
+    with pytest.raises(InputError):
+        Request.of({**ask(HOPPER, ["orifice=2,3"], None, "4", {}).data(), **changed})

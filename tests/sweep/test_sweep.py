@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import re
 import signal
 import subprocess
@@ -25,7 +26,7 @@ from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.sweep import Ways
-from sandbox.sweep.tables import AVALANCHES, RUNS, Tables, made, read_request
+from sandbox.sweep.tables import ASKED, AVALANCHES, LOCK, RUNS, Tables, made, read_request
 from tests.sweep.conftest import fake
 
 REPOSITORY = Path(__file__).parents[2]
@@ -145,6 +146,52 @@ def test_a_table_that_was_cut_anywhere_is_whole_again(tmp_path: Path) -> None:
         (folder / AVALANCHES).write_bytes(falls[: len(falls) * (cut + 200) // len(runs)])
         go(folder, small())
         assert compared(folder) == whole
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_rows_that_no_sweep_has_written_are_made_again(tmp_path: Path) -> None:
+    go(tmp_path, small())
+    whole = {name: (tmp_path / name).read_text() for name in (RUNS, AVALANCHES)}
+    for name, column, text in (
+        *((RUNS, "row", text) for text in ("²", "0", 5000 * "9")),
+        *((RUNS, "increments", text) for text in ("x", "", "-1", "1.5")),
+        *((RUNS, "out", "x"), (RUNS, "seconds", "nan"), (RUNS, "outcome", "<b>")),
+        *((AVALANCHES, "row", "²"), (AVALANCHES, "avalanche", "x"), (AVALANCHES, "size", "inf")),
+    ):
+        header, first, *rest = whole[name].splitlines()
+        changed = dict(zip(header.split(","), first.split(","), strict=True)) | {column: text}
+        (tmp_path / name).write_text("\n".join([header, ",".join(changed.values()), *rest, ""]))
+        if name == RUNS:
+            made(tmp_path, "1")
+        tables = go(tmp_path, small())
+        assert summary.as_text(tables.request, summary.cells(tables))
+        assert {name: (tmp_path / name).read_text() for name in whole} == whole
+
+
+def test_what_is_no_folder_of_a_sweep_is_said_in_one_line(tmp_path: Path) -> None:
+    Tables(tmp_path, small()).close()
+    asked = (tmp_path / ASKED).read_text()
+    for text in (100_000 * "[", asked.replace('"versions": {', '"versions": 3, "x": {')):
+        (tmp_path / ASKED).write_text(text)
+        with pytest.raises(InputError, match="damaged"):
+            read_request(tmp_path)
+    (tmp_path / ASKED).write_text(asked)
+    for words in ("²", "", 5000 * "9"):
+        with pytest.raises(InputError, match="number of a row"):
+            made(tmp_path, words)
+    (tmp_path / RUNS).write_text(f'"{200_000 * "x"}"\n')
+    with pytest.raises(InputError, match="damaged"):
+        Tables(tmp_path, small())
+    (tmp_path / RUNS).unlink()
+    os.mkfifo(tmp_path / RUNS)
+    with pytest.raises(InputError, match="no file"):
+        Tables(tmp_path, small())
+
+
+def test_a_lock_that_cannot_be_taken(tmp_path: Path) -> None:
+    (tmp_path / LOCK).mkdir()
+    with pytest.raises(InputError, match=LOCK):
+        Tables(tmp_path, small())
 
 
 @pytest.mark.usefixtures("in_threads")

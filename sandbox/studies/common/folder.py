@@ -19,6 +19,8 @@ LIBRARIES = ("numpy", "numba", "pymunk", "matplotlib")
 
 def prepare_folder(text: str, inside: str = "runs") -> Path:
     """The folder for the output, made if need be, with one ``inside`` it. Raises InputError if it cannot be written to."""
+    if not text:
+        raise InputError("--out needs a folder: . is the one you are in")
     folder = Path(text)
     try:
         (folder / inside).mkdir(parents=True, exist_ok=True)
