@@ -26,6 +26,7 @@ from scenes.text import Text
 LONGEST = 100_000  # letters of a text
 DEEPEST = 4  # texts within texts
 _NOT_FINITE = {"nan": math.nan, "inf": math.inf, "-inf": -math.inf}
+_HALF = re.compile("[\ud800-\udfff]")  # of a letter: no file takes it
 _SPEC = re.compile(r"[+]?(\.\d)?[defgn%]?|[^{}|]*(\|[^{}|]*)+")  # of a number, or forms
 
 Arrays = dict[str, NDArray[Any]]
@@ -169,12 +170,12 @@ def _array(inner: tuple[Any, ...], path: str, arrays: Arrays) -> NDArray[Any]:
 def _text(data: Any, path: str, depth: int = 0) -> str:
     """A plain text, or one that remembers what it was made from: a template that asks for nothing but its values."""
     if isinstance(data, str):
-        return str(_known(len(data) <= LONGEST, data, path))
+        return str(_known(len(data) <= LONGEST and not _HALF.search(data), data, path))
     whole = isinstance(data, dict) and set(data) == {"text", "template", "values"}
     _known(whole and isinstance(data["values"], dict) and depth < DEEPEST, data, path)
     _text(data["text"], path)
     template, values = data["template"], {}
-    _known(isinstance(template, str) and len(template) <= LONGEST, data, path)
+    _known(isinstance(template, str) and _text(template, path) == template, data, path)
     for name, value in data["values"].items():
         number = isinstance(value, (int, float)) and abs(value) <= sys.float_info.max
         values[name] = value if number else _text(value, path, depth + 1)

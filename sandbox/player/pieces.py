@@ -38,8 +38,8 @@ def asset(name: str, package: str = "sandbox.player") -> str:
 
 
 def as_json(value: Any) -> str:
-    """JSON that cannot end the script it stands in."""
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+    """JSON that says nothing to whoever reads the script it stands in as HTML: no end of it, no beginning of a comment."""
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 def spoken(saying: Callable[[], str], shown: str, tag: str = "span") -> str:

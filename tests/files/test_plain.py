@@ -25,3 +25,9 @@ def test_an_array_is_known_by_any_name_of_its_type(kind: Any) -> None:
     assert plain.read(kind, None, "it", arrays) == pytest.approx([0.0, 1.0, 2.0])
     with pytest.raises(InputError, match="other is missing, or of another kind"):
         plain.read(kind, None, "other", arrays)
+
+
+def test_half_a_letter_is_refused() -> None:
+    for text in ("\ud800", {"text": "", "template": "\udfff", "values": {}}):
+        with pytest.raises(InputError, match="not what it should be"):
+            Plain({}, frozenset()).read(str, text, "it", {})

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -196,6 +199,26 @@ def test_the_collection_names_what_is_there_and_an_earlier_one_goes(tmp_path: Pa
     (folder,) = (path for path in tmp_path.iterdir() if path.is_dir())
     text = (tmp_path / "run.pvd").read_text()
     assert all(f'file="{folder.name}/{path.name}"' in text for path in folder.iterdir())
+
+
+def test_any_name_has_a_folder_beside_it_that_xml_can_name(tmp_path: Path) -> None:
+    session = Session("single_grain")
+    session.build()
+    for name in ('a "b" & <c> #1', os.fsdecode(b"\xff"), 250 * "n"):
+        path = tmp_path / f"{name}.pvd"
+        with Trajectory(path) as file:
+            file.write(session)
+        named = [data.attrib["file"] for data in ElementTree.parse(path).iter("DataSet")]
+        assert len(named) == 3
+        assert all((tmp_path / file).is_file() for file in named)
+        assert len(list(tmp_path.glob("*-*"))) == 1
+        with Trajectory(path) as file:  # what was there goes
+            session.advance(1)
+            file.write(session)
+            file.write(session)
+        assert len(list(tmp_path.glob("*-*"))) == 1
+        path.unlink()
+        shutil.rmtree(next(tmp_path.glob("*-*")))
 
 
 def test_the_same_run_gives_the_same_bytes_repeated_too(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from sandbox.player import coding
 from sandbox.player.coding import Writer, read, unpacked
 from sandbox.player.kept import QUANTITIES
 from sandbox.player.page import SCRIPTS, Look, page
-from sandbox.player.pieces import asset
+from sandbox.player.pieces import as_json, asset
 from sandbox.player.story import PLAYER, story
 from sandbox.player.tape import Tape
 from sandbox.record.record import in_step
@@ -166,6 +166,12 @@ def test_odd_frames_make_a_page(frame: Frame) -> None:
 @pytest.fixture(scope="module")
 def text(moments: list[list[Frame]]) -> str:
     return page(taped(moments), Look(theme="light", language="de"))
+
+
+def test_no_text_can_be_taken_for_markup_in_a_script() -> None:
+    bad = "</script><!--<script>"
+    assert "<" not in as_json({bad: [bad]})
+    assert json.loads(as_json({bad: [bad]})) == {bad: [bad]}
 
 
 def test_nothing_is_asked_for(text: str) -> None:

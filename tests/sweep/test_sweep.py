@@ -21,6 +21,7 @@ from core.errors import InputError
 from sandbox.cli import main as cli
 from sandbox.session.session import Session
 from sandbox.studies.common.batch import LOST
+from sandbox.studies.common.folder import write_text
 from sandbox.sweep import outcome, summary, sweep
 from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
@@ -186,6 +187,11 @@ def test_what_is_no_folder_of_a_sweep_is_said_in_one_line(tmp_path: Path) -> Non
     os.mkfifo(tmp_path / RUNS)
     with pytest.raises(InputError, match="no file"):
         Tables(tmp_path, small())
+
+
+def test_what_is_no_text_in_a_path_stops_no_page(tmp_path: Path) -> None:
+    write_text(tmp_path / "page", os.fsdecode(b"play b\xff#1"))
+    assert (tmp_path / "page").read_text() == "play b?#1"
 
 
 def test_a_lock_that_cannot_be_taken(tmp_path: Path) -> None:

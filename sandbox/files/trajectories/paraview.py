@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import os
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -31,6 +32,8 @@ from sandbox.files.trajectories.state import State
 
 CORNERS = 32  # of a grain's outline, and of a disc's
 _TYPES = {"f": "Float64", "i": "Int64"}
+LONGEST = 60  # letters of a folder's name that are those of the PVD file
+_ODD = re.compile(r"[^\w. -]")  # what XML spells otherwise, or not at all
 _PART = re.compile(r'file="([^"/]+-[0-9a-f]{8})/((?:grains|contacts|bodies)-\d{6}\.vtp)"')
 
 
@@ -63,7 +66,10 @@ class ParaView:
 
     def finish(self) -> None:
         """All files, and last the one that names them: until then the earlier one is there, and what it names."""
-        folder = self._path.with_name(f"{self._path.stem}-{self._digest.hexdigest()[:8]}")
+        name = _ODD.sub("_", self._path.stem)[:LONGEST]
+        if name != self._path.stem:  # others may be called the same now
+            self._digest.update(os.fsencode(self._path.stem))
+        folder = self._path.with_name(f"{name}-{self._digest.hexdigest()[:8]}")
         folder.mkdir(exist_ok=True)
         self._aside.seek(0)
         for part in self._parts:

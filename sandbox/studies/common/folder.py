@@ -66,8 +66,8 @@ def finite(value: Any) -> Any:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all. Raises InputError if it cannot be written."""
-    write_bytes(path, text.encode())
+    """Write a file whole or not at all; what is no text gets question marks. Raises InputError if it cannot be written."""
+    write_bytes(path, text.encode(errors="replace"))
 
 
 def write_bytes(path: Path, content: bytes) -> None:
