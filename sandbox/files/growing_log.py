@@ -33,6 +33,7 @@ class GrowingLog:
         self._written: Log | None = None
         self._file: BinaryIO | None = None
         self._last = 0  # bytes of the last line
+        self._size = 0  # of the file, in bytes
         self._every = every
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, name="log", daemon=True)
@@ -47,7 +48,7 @@ class GrowingLog:
         newest, written = self._newest, self._written
         if newest is None or newest is written:
             return
-        if self._file is None or written is None or not self.path.exists():
+        if written is None or not self.path.exists() or not self._as_left():
             self._release()
             write_log(self.path, newest)
             self._file = followed(self.path).open("r+b", buffering=0)
@@ -56,12 +57,14 @@ class GrowingLog:
             last = last_line(newest)
             self._overwrite(lines_of(newest.commands[len(written.commands) :]) + last)
             self._last = len(last)
+        assert self._file is not None
+        self._size = os.fstat(self._file.fileno()).st_size
         self._written = newest
 
     def close(self) -> None:
         """The end: write what is left, and wait until the disk has it. Raises InputError if that cannot be.
 
-        Where somebody has put another file in its place, all is written anew.
+        Where somebody has put another file in its place, or written to it, all is written anew.
         """
         self._stop.set()
         self._thread.join()
@@ -84,10 +87,14 @@ class GrowingLog:
 
     def _finish(self, newest: Log) -> None:
         self.write()
-        if self._file is None or not self._in_place():
-            write_log(self.path, newest)
-        else:
+        if self._file is not None and self._in_place() and self._as_left():
             os.fsync(self._file.fileno())
+        else:
+            write_log(self.path, newest)
+
+    def _as_left(self) -> bool:
+        """Is the file that is being written as long as it was? Somebody may have cut it, or added to it."""
+        return self._file is not None and os.fstat(self._file.fileno()).st_size == self._size
 
     def _in_place(self) -> bool:
         """Is the file that is being written still the one of that name?"""

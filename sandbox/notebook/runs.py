@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.errors import InputError
 from sandbox.environment import prepare_headless
 from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
+from scenes.parameter import shown
 from scenes.scene import Check
 from scenes.text import counted
 
@@ -43,6 +45,9 @@ def run(
     """
     from tqdm import tqdm
 
+    for name, number, low in (("steps", steps, 0), ("every", every, 1)):
+        if number is not None and not (isinstance(number, (int, np.integer)) and number >= low):
+            raise InputError(f"{name} must be a whole number from {low}, not {shown(number)}")
     session = Session(scene, packing, seed, settings)
     session.build()
     session.submit(Protocol(True))

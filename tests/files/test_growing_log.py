@@ -146,6 +146,24 @@ def test_a_log_that_was_taken_away_is_written_anew(growing: GrowingLog) -> None:
     assert read_log(growing.path) == until(6)
 
 
+@pytest.mark.parametrize("size", [0, -5, 5])
+def test_a_log_that_somebody_has_cut_or_added_to_is_written_anew(
+    growing: GrowingLog, size: int
+) -> None:
+    def disturb() -> None:
+        os.truncate(growing.path, growing.path.stat().st_size + size if size else 0)
+
+    growing.keep(until(5))
+    growing.write()
+    disturb()
+    growing.keep(until(9))
+    growing.write()
+    assert read_log(growing.path) == until(9)
+    disturb()
+    growing.close()
+    assert read_log(growing.path) == until(9)
+
+
 def test_a_folder_that_vanishes_is_told(growing: GrowingLog) -> None:
     growing.keep(until(5))
     growing.write()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from core.errors import InputError
 from sandbox.notebook import Result, run
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
@@ -61,6 +63,12 @@ def test_a_run_is_that_of_a_session(capsys: pytest.CaptureFixture[str]) -> None:
         result.table[session.frame().curve_label], session.frame().curve_force
     )
     assert "7/7" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("wrong", [{"steps": -3}, {"steps": 2.5}, {"every": 0}, {"every": "x"}])
+def test_counts_are_whole_numbers(wrong: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="must be a whole number from"):
+        run("single_grain", **wrong)
 
 
 def test_the_package_is_light() -> None:
