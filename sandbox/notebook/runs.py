@@ -45,9 +45,8 @@ def run(
     """
     from tqdm import tqdm
 
-    for name, number, low in (("steps", steps, 0), ("every", every, 1)):
-        if number is not None and not (isinstance(number, (int, np.integer)) and number >= low):
-            raise InputError(f"{name} must be a whole number from {low}, not {shown(number)}")
+    _check_count("steps", 0 if steps is None else steps, 0)
+    _check_count("every", every, 1)
     session = Session(scene, packing, seed, settings)
     session.build()
     session.submit(Protocol(True))
@@ -69,6 +68,11 @@ def run(
     if frames[-1].increment != session.history[-1].increment and not session.busy:
         frames.append(session.frame())
     return Result(session, frames)
+
+
+def _check_count(name: str, number: object, low: int) -> None:
+    if not (isinstance(number, (int, np.integer)) and number >= low):
+        raise InputError(f"{name} must be a whole number from {low}, not {shown(number)}")
 
 
 class Columns(dict[str, NDArray[Any]]):
