@@ -68,7 +68,7 @@ def kernel(
 ) -> Any:
     """Compile a function to machine code that releases the GIL and is cached on disk.
 
-    Use as ``@kernel`` or ``@kernel(noalias=True)``; further keywords go to ``numba.njit``.
+    Use as ``@kernel`` or ``@kernel(noalias=True)``; further keywords go to ``numba.njit``. With ``cache=False`` nothing is kept.
     """
 
     def decorate(f: Callable[..., Any]) -> Any:
@@ -84,7 +84,8 @@ def kernel(
             flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)
         dispatcher = numba.njit(**flags)(f)
-        keep(dispatcher)
+        if flags.get("cache", True):
+            keep(dispatcher)
         return dispatcher
 
     return decorate if function is None else decorate(function)
