@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from sandbox import __version__
 from sandbox.studies.common.statistics import Demand, Estimate, verdicts
@@ -56,6 +57,20 @@ class Check:
     demand: Demand
     reason: str  # of the tolerance
     seeds: tuple[int, ...] = ()
+
+    def data(self, verdict: str, p: float) -> dict[str, Any]:
+        """For a file of results; ``p`` is corrected for the number of verdicts."""
+        return {
+            "quantity": self.quantity,
+            "value": self.estimate.value,
+            "interval": list(self.estimate.interval()),
+            "expected": self.expected,
+            "low": self.demand.low,
+            "high": self.demand.high,
+            "reason": self.reason,
+            "verdict": verdict,
+            "p_holm": p,
+        }
 
 
 @dataclass(frozen=True)

@@ -113,16 +113,8 @@ def as_json(verdicts: Sequence[Verdict], failures: Sequence[str], about: Mapping
             {
                 "case": case.name,
                 "source": case.source,
-                "quantity": check.quantity,
-                "value": check.estimate.value,
-                "interval": list(check.estimate.interval()),
-                "expected": check.expected,
-                "low": check.demand.low,
-                "high": check.demand.high,
-                "reason": check.reason,
+                **check.data(verdict, p),
                 "seeds": list(check.seeds),
-                "verdict": verdict,
-                "p_holm": p,
             }
             for case, check, verdict, p in verdicts
         ],

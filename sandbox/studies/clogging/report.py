@@ -156,15 +156,7 @@ def as_json(verdicts: Sequence[Verdict], found: Found, about: Mapping[str, Any])
             {
                 "claim": claim.name,
                 "source": claim.source,
-                "quantity": check.quantity,
-                "value": check.estimate.value,
-                "interval": list(check.estimate.interval()),
-                "expected": check.expected,
-                "low": check.demand.low,
-                "high": check.demand.high,
-                "reason": check.reason,
-                "verdict": verdict,
-                "p_holm": p,
+                **check.data(verdict, p),
             }
             for claim, check, verdict, p in verdicts
         ],
