@@ -89,16 +89,16 @@ def circle_through(start: str) -> list[str]:
 
 
 # Each room, and those below it that it may import. A room within another is told from it where it may import less.
-STUDY = "studies.common session draw scenes core"
+STUDY = "studies.common ensemble files session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "studies.clogging studies.common site record player files session words scenes core",
-    "window": "window.solvers sweep studies.common record player files draw lessons session words scenes core",
-    "sweep": "studies.common record draw session scenes core",
+    "studies.clogging studies.common ensemble site record player files session words scenes core",
+    "window": "window.solvers sweep ensemble record player files draw lessons session words scenes core",
+    "sweep": "ensemble files record draw session scenes core",
     "window.solvers": "files session words scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
-    "site": "studies.common record player session words scenes core",
+    "site": "record files player session words scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,
     "studies.stability": STUDY,
@@ -107,7 +107,8 @@ ROOMS = {
     "studies.clogging": f"sweep studies.classics {STUDY}",
     "studies.bench": f"sweep {STUDY}",
     "studies.hand": f"lessons {STUDY}",
-    "studies.common": "core",
+    "studies.common": "ensemble core",
+    "ensemble": "core",
     "lessons": "session scenes core",
     "files": "session scenes core",
     "draw": "draw.raster session words scenes core",
@@ -119,6 +120,7 @@ HALL = {
     "sandbox",
     "sandbox.bars",
     "sandbox.environment",
+    "sandbox.extras",
     "sandbox.interrupts",
 }  # in no room: for all in sandbox
 

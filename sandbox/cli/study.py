@@ -18,8 +18,8 @@ Study = Callable[[argparse.Namespace], int]
 
 def paper(options: argparse.Namespace) -> int:
     """Judge the claims of the paper."""
-    from sandbox.studies.common.extras import require_matplotlib, require_scipy
-    from sandbox.studies.common.folder import prepare_folder
+    from sandbox.extras import require_matplotlib, require_scipy
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.paper import study
     from sandbox.studies.paper.report import summary
 
@@ -38,9 +38,9 @@ def paper(options: argparse.Namespace) -> int:
 
 def accuracy(options: argparse.Namespace) -> int:
     """Measure error against run time."""
+    from sandbox.extras import require_matplotlib, require_scipy
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.accuracy import study
-    from sandbox.studies.common.extras import require_matplotlib, require_scipy
-    from sandbox.studies.common.folder import prepare_folder
 
     study.choose(options.scene)
     require_matplotlib()
@@ -65,8 +65,8 @@ def stability(options: argparse.Namespace) -> int:
     """Carry out the hard cases."""
     from collections import Counter
 
-    from sandbox.studies.common.extras import require_matplotlib
-    from sandbox.studies.common.folder import prepare_folder
+    from sandbox.extras import require_matplotlib
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.stability import study
     from sandbox.studies.stability.case import FAILS
 
@@ -84,8 +84,8 @@ def stability(options: argparse.Namespace) -> int:
 
 def hand(options: argparse.Namespace) -> int:
     """Measure what a hand can move, play every tour, let random hands loose."""
-    from sandbox.studies.common.extras import require_scipy
-    from sandbox.studies.common.folder import prepare_folder
+    from sandbox.extras import require_scipy
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.hand import study
     from sandbox.studies.hand.report import wrong
 
@@ -104,10 +104,10 @@ def hand(options: argparse.Namespace) -> int:
 
 def classics(options: argparse.Namespace) -> int:
     """Hold the program against textbook and published cases."""
+    from sandbox.extras import require_scipy
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.classics import study
-    from sandbox.studies.common.extras import require_scipy
-    from sandbox.studies.common.folder import prepare_folder
-    from sandbox.studies.common.statistics import FAILS
+    from sandbox.studies.common.verdicts import FAILS
 
     cases = study.choose(options.only)
     require_scipy()
@@ -127,9 +127,9 @@ def classics(options: argparse.Namespace) -> int:
 
 def clogging(options: argparse.Namespace) -> int:
     """Clogging as an experiment: ensembles of drains and pushes."""
+    from sandbox.extras import require_matplotlib, require_scipy
+    from sandbox.files.folder import prepare_folder
     from sandbox.studies.clogging import study
-    from sandbox.studies.common.extras import require_matplotlib, require_scipy
-    from sandbox.studies.common.folder import prepare_folder
     from sandbox.sweep import workers
     from sandbox.sweep.sweep import Ways
 

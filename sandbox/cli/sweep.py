@@ -94,7 +94,7 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
 
 def sweep(options: argparse.Namespace) -> int:
     """Carry a sweep out, or go on with one, and print what it came to."""
-    from sandbox.studies.common.extras import require_matplotlib, require_scipy
+    from sandbox.extras import require_matplotlib, require_scipy
     from sandbox.sweep import export, workers
     from sandbox.sweep.tables import is_sweep
 

@@ -189,9 +189,9 @@ def study(options: argparse.Namespace) -> int:
 
 def site(options: argparse.Namespace) -> int:
     """Write the gallery."""
+    from sandbox.files.folder import prepare_folder
     from sandbox.site import site as gallery
     from sandbox.site import studies as results
-    from sandbox.studies.common.folder import prepare_folder
     from scenes import registry
 
     scenes = [registry.get(name).name for name in options.scene or registry.names()]

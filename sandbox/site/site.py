@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sandbox.bars import bar_options
+from sandbox.files.folder import write_text
 from sandbox.player.page import Look, page
 from sandbox.player.pieces import spoken
 from sandbox.player.tape import Tape
@@ -15,7 +16,6 @@ from sandbox.site.markup import SHOWN, SITE, document, link, said, title_of
 from sandbox.site.runs import run
 from sandbox.site.worksheets import FILE as WORKSHEETS
 from sandbox.site.worksheets import worksheets
-from sandbox.studies.common.folder import write_text
 from sandbox.words import words
 
 MOST = 15_000_000  # bytes that all pages may have together

@@ -8,8 +8,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+from sandbox.extras import require
 from sandbox.site.markup import document, link, said
-from sandbox.studies.common.extras import require
 from sandbox.words.words import Section
 
 TITLES = Section("site_studies")

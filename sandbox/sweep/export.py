@@ -7,7 +7,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.studies.common.extras import require
+from sandbox.extras import require
 from sandbox.sweep.tables import AVALANCHES, RUNS
 
 

@@ -15,11 +15,11 @@ import numpy as np
 from core.kernel_cache import CORE, source_hash
 from core.relaxation import StopReason
 from sandbox import __version__
+from sandbox.ensemble.clock import clock
+from sandbox.ensemble.pool import Stopped, stopping
 from sandbox.session.commands import Protocol
 from sandbox.session.history import Row
 from sandbox.session.session import Session
-from sandbox.studies.common.clock import clock
-from sandbox.studies.common.pool import Stopped, stopping
 from sandbox.sweep.columns import AFTER, Entry
 from sandbox.sweep.request import CLOG, EMPTY, LOCKED, Job
 

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 from sandbox.draw.theme import CIVIDIS
-from sandbox.studies.common.folder import prepare_folder, write_text
+from sandbox.files.folder import prepare_folder, write_text
 from sandbox.sweep.outcome import FAILED
 from sandbox.sweep.pictures import View, axis_label
 from sandbox.sweep.request import Request

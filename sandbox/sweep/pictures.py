@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from sandbox.draw.theme import AUXETIC, EVENT, HAND, MIXED, REGULAR
-from sandbox.studies.common.folder import write_bytes
-from sandbox.studies.common.style import RESOLUTION, STYLE
+from sandbox.ensemble.style import RESOLUTION, STYLE
+from sandbox.files.folder import write_bytes
 from sandbox.sweep.request import Request
 from sandbox.sweep.sizes import mean_size, survival
 from sandbox.sweep.summary import Cell

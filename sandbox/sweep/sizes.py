@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import Share, Student
+from sandbox.ensemble.estimates import Share, Student
 
 MANY = 1e6  # degrees of freedom of a normal deviate
 

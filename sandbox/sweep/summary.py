@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import Share
+from sandbox.ensemble.estimates import Share
 from sandbox.sweep.outcome import CENSORED, CLOGGED, DECIDED, FAILED, STOPPED
 from sandbox.sweep.request import Request
 from sandbox.sweep.tables import Row, Tables

@@ -9,7 +9,7 @@ from functools import partial
 
 from core.errors import InputError
 from core.warmup import compile_kernels
-from sandbox.studies.common.batch import LOST, Batch, Workers, carry_out_all
+from sandbox.ensemble.batch import LOST, Batch, Workers, carry_out_all
 from sandbox.sweep.outcome import Found, carry_out, failure
 from sandbox.sweep.request import Job
 from sandbox.sweep.tables import Tables

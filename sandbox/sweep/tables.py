@@ -23,8 +23,9 @@ from filelock import FileLock, Timeout
 from core.errors import InputError
 from core.files import is_special
 from sandbox import __version__
+from sandbox.ensemble.machine import machine
+from sandbox.files.folder import prepare_folder, write_text
 from sandbox.interrupts import deferred
-from sandbox.studies.common.folder import machine, prepare_folder, write_text
 from sandbox.sweep.columns import AVALANCHE, columns
 from sandbox.sweep.outcome import CENSORED, DECIDED, FAILED, Found
 from sandbox.sweep.request import Job, Request

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from core.errors import InputError
-from sandbox.studies.common.batch import Workers
-from sandbox.studies.common.extras import require
-from sandbox.studies.common.pool import Pool
+from sandbox.ensemble.batch import Workers
+from sandbox.ensemble.pool import Pool
+from sandbox.extras import require
 
 LOCAL, DASK = "local", "dask://"
 SILENT = "no scheduler answers there; start one: dask scheduler"

@@ -126,10 +126,10 @@ def begin(*_: object, **__: object) -> None:
 def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Run in an empty folder, with everything that takes long replaced."""
     from sandbox import environment
+    from sandbox.files import folder as output_folder
     from sandbox.record import record
     from sandbox.studies.accuracy import study as accuracy
     from sandbox.studies.bench import bench
-    from sandbox.studies.common import folder as studies_folder
     from sandbox.studies.stability import study as stability
     from sandbox.window import app
 
@@ -145,7 +145,7 @@ def nothing_is_done(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
             (record, "record"),
             (record, "repeat"),
             (bench, "run"),
-            (studies_folder, "prepare_folder"),
+            (output_folder, "prepare_folder"),
             (stability, "study"),
             (accuracy, "study"),
         ):

@@ -16,6 +16,7 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli import main as cli
+from sandbox.ensemble.machine import machine
 from sandbox.session.commands import Protocol as Drive
 from sandbox.session.session import Session
 from sandbox.studies.accuracy import study as accuracy
@@ -33,7 +34,6 @@ from sandbox.studies.accuracy.summary import (
     summarise,
 )
 from sandbox.studies.accuracy.walk import Knobs, begin, walk
-from sandbox.studies.common.folder import machine
 from scenes import registry
 
 COMMAND = [sys.executable, "-m", "sandbox", "study", "accuracy"]

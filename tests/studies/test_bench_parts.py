@@ -21,19 +21,19 @@ from sandbox.studies.bench import scaling as bench_scaling
 from sandbox.studies.bench import soft_discs
 from sandbox.studies.bench import startup as bench_startup
 from sandbox.studies.bench import threads as bench_threads
+from sandbox.studies.bench import times as bench_times
 from sandbox.studies.bench.disc_forces import DiscForces
-from sandbox.studies.common import clock as bench_clock
 
 
 def test_exponent_of_a_power_law() -> None:
     sizes = [500, 1000, 100_000]
-    assert bench_clock.exponent(sizes, [3.0 * n**1.07 for n in sizes]) == pytest.approx(1.07)
-    assert bench_clock.exponent(sizes, [2.0, 2.0, 2.0]) == pytest.approx(0.0, abs=1e-12)
+    assert bench_times.exponent(sizes, [3.0 * n**1.07 for n in sizes]) == pytest.approx(1.07)
+    assert bench_times.exponent(sizes, [2.0, 2.0, 2.0]) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_jobs_are_timed_in_turn() -> None:
     calls: list[str] = []
-    times = bench_clock.in_turn(
+    times = bench_times.in_turn(
         {"a": lambda n: calls.append("a"), "b": lambda n: calls.append("b")}, seconds=0.0
     )
     assert calls[:4] == ["a", "a", "b", "b"]  # to choose how often
@@ -42,7 +42,7 @@ def test_jobs_are_timed_in_turn() -> None:
 
 
 def test_least_and_median() -> None:
-    times = bench_clock.Times((3e-6, 1e-6, 2e-6))
+    times = bench_times.Times((3e-6, 1e-6, 2e-6))
     assert times.data(1e-6) == pytest.approx({"min": 1.0, "median": 2.0})
 
 

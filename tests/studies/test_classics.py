@@ -19,7 +19,7 @@ pytest.importorskip("scipy")
 from sandbox.cli import main as cli
 from sandbox.studies.classics import apparatus, clogging, discs, grains, heaps, packings, study
 from sandbox.studies.classics.case import FIRST, Case, Job, Row, judged
-from sandbox.studies.common.statistics import FAILS, HOLDS, OPEN
+from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN
 
 REPOSITORY = Path(__file__).parents[2]
 CHEAP = ("pile", "block", "rolling", "arch", "plates", "minimum")

@@ -11,7 +11,8 @@ import pytest
 
 pytest.importorskip("scipy")
 
-from sandbox.studies.common.statistics import FAILS, HOLDS, OPEN, Demand, Exact, Student
+from sandbox.ensemble.estimates import Exact, Student
+from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN, Demand
 from sandbox.studies.paper import bulk, cost, grains, hopper, intruder, quakes, report
 from sandbox.studies.paper import claims as parts_of
 from sandbox.studies.paper.claims import (

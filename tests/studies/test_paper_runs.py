@@ -18,8 +18,8 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli import main as cli
-from sandbox.studies.common.pool import Stopped
-from sandbox.studies.common.statistics import Demand
+from sandbox.ensemble.pool import Stopped
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.paper import study as paper
 from sandbox.studies.paper.claims import (
     Claim,
@@ -185,8 +185,8 @@ def test_a_hand_is_that_of_the_study_of_the_hand() -> None:
 def test_a_process_that_dies_fails_its_run_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from sandbox.studies.common.batch import LOST
-    from sandbox.studies.common.pool import Pool
+    from sandbox.ensemble.batch import LOST
+    from sandbox.ensemble.pool import Pool
     from sandbox.studies.paper import runs
 
     store = Store(tmp_path)

@@ -16,7 +16,7 @@ from core.packing import Packing, PeriodicBox
 from core.relaxation import StopReason
 from core.rigid import RigidBody, RigidWorld
 from sandbox.cli import main as cli
-from sandbox.studies.common.pool import Stopped
+from sandbox.ensemble.pool import Stopped
 from sandbox.studies.stability import report as stability_report
 from sandbox.studies.stability import rigs as stability_rigs
 from sandbox.studies.stability import study as stability

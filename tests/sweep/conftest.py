@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sandbox.studies.common.batch import Workers
+from sandbox.ensemble.batch import Workers
 from sandbox.sweep import sweep
 from sandbox.sweep.columns import AFTER
 from sandbox.sweep.outcome import CLOGGED, EMPTIED, Found

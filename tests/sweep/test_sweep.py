@@ -19,9 +19,9 @@ pytest.importorskip("scipy")
 
 from core.errors import InputError
 from sandbox.cli import main as cli
+from sandbox.ensemble.batch import LOST
+from sandbox.files.folder import write_text
 from sandbox.session.session import Session
-from sandbox.studies.common.batch import LOST
-from sandbox.studies.common.folder import write_text
 from sandbox.sweep import outcome, summary, sweep
 from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out

@@ -9,8 +9,8 @@ import numpy as np
 from core.arrays import Floats
 from core.exact import contact_distance
 from core.jit import kernel
+from sandbox.ensemble.clock import clock
 from sandbox.studies.accuracy.exact import quadratic, tilt
-from sandbox.studies.common.clock import clock
 from scenes.scene import Scene
 
 HALVINGS = (

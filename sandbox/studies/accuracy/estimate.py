@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from core.arrays import Floats
+from sandbox.ensemble.estimates import wilson
 from sandbox.studies.accuracy.live import FIT, JUDGE
-from sandbox.studies.common.statistics import wilson
 from scenes.accuracy import Bound, left_over
 
 SHARES = {"usual": 0.5, "nine_of_ten": 0.9}

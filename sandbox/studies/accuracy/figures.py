@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from sandbox.studies.common.folder import write_bytes
-from sandbox.studies.common.style import STYLE, plain_numbers
+from sandbox.ensemble.style import STYLE, plain_numbers
+from sandbox.files.folder import write_bytes
 
 Summary = Mapping[str, Any]
 Points = Sequence[tuple[float, float]]

@@ -15,6 +15,7 @@ from core import reference
 from core.arrays import Floats
 from core.observables import force_drops
 from sandbox import __version__
+from sandbox.ensemble.pool import Stopped
 from sandbox.studies.accuracy.chart import paper_chart
 from sandbox.studies.accuracy.contact import contact_job
 from sandbox.studies.accuracy.exact import exact_increment
@@ -22,7 +23,6 @@ from sandbox.studies.accuracy.fronts import rms
 from sandbox.studies.accuracy.peers import df_sane, l_bfgs_b, newton
 from sandbox.studies.accuracy.protocols import FULL, QUICK, Protocol, Sweeps, protocol
 from sandbox.studies.accuracy.walk import Knobs, Look, Solve, Start, Walk, Walker, begin, walk
-from sandbox.studies.common.pool import Stopped
 from scenes import registry
 
 Stopping = Callable[[], bool]

@@ -24,8 +24,8 @@ from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point
 from core.warmup import compile_kernels
 from sandbox import __version__
+from sandbox.ensemble.pool import Stopped
 from sandbox.studies.accuracy.walk import Knobs, Look, Start, Walker
-from sandbox.studies.common.pool import Stopped
 from scenes import registry
 from scenes.scene import BY_MACHINE, HAND_STRENGTH
 

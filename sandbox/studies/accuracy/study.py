@@ -15,6 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from core.files import atomic_write
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.machine import machine
+from sandbox.ensemble.pool import Pool, stopping
+from sandbox.files.folder import write_text
 from sandbox.interrupts import deferred
 from sandbox.studies.accuracy import job as accuracy_job
 from sandbox.studies.accuracy import live
@@ -25,9 +29,7 @@ from sandbox.studies.accuracy.live import Drive, drives
 from sandbox.studies.accuracy.protocols import APART, PROTOCOLS, protocol
 from sandbox.studies.accuracy.report import as_markdown, as_table, statement
 from sandbox.studies.accuracy.summary import summarise
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.folder import finite, machine, write_text
-from sandbox.studies.common.pool import Pool, stopping
+from sandbox.studies.common.finite import finite
 from scenes import registry
 from scenes.accuracy import accuracy_of
 

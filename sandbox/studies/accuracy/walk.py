@@ -21,7 +21,7 @@ from core.quasistatic import Increment, Quasistatic
 from core.relaxation import Relaxation, StopReason
 from core.rigid import Point
 from core.warmup import compile_kernels
-from sandbox.studies.common.clock import clock
+from sandbox.ensemble.clock import clock
 from scenes import registry
 from scenes.parameter import Value
 from scenes.scene import Scene, Setup

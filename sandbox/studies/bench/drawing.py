@@ -9,7 +9,7 @@ from sandbox.session.commands import Protocol
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
 from sandbox.studies.bench.report import Row, Section, at_most
-from sandbox.studies.common.clock import in_turn
+from sandbox.studies.bench.times import in_turn
 
 GRAINS, SIZE = 1000, (1280, 720)
 TARGET = 9.0  # [ms]

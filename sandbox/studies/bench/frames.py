@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
+from sandbox.ensemble.clock import clock
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.studies.bench.report import Row, Section, at_least, at_most, finite
-from sandbox.studies.common.clock import clock
 from scenes import registry
 from scenes.scene import HAND_STRENGTH, STRONGEST
 

@@ -17,7 +17,7 @@ from core.jit import kernel
 from core.relaxation import Relaxation
 from sandbox.studies.bench import scalar_kernel
 from sandbox.studies.bench.report import Row, Section, at_most
-from sandbox.studies.common.clock import Times, in_turn
+from sandbox.studies.bench.times import Times, in_turn
 
 GRAINS, PACKING_FRACTION = 1000, 0.9
 CASES = {"without a box": False, "periodic box": True}

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.ensemble.clock import clock
 from sandbox.studies.bench.disc_forces import DiscForces
 from sandbox.studies.bench.soft_discs import (
     MOST_ITERATIONS,
@@ -25,7 +26,6 @@ from sandbox.studies.bench.soft_discs import (
     SoftDiscs,
     read,
 )
-from sandbox.studies.common.clock import clock
 
 # The fastest of what was tried for each at N = 1000: time step, its ceiling, integrator, skin.
 LAMMPS_SETTINGS = (

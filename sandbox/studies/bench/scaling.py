@@ -16,8 +16,9 @@ from core.relaxation import Relaxation
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
 from core.system import System
+from sandbox.ensemble.clock import clock
 from sandbox.studies.bench.report import Row, Section, at_most
-from sandbox.studies.common.clock import clock, exponent
+from sandbox.studies.bench.times import exponent
 
 SEED_GRAINS, PACKING_FRACTION = 500, 0.9
 TILES = {  # grains: columns and rows of copies

@@ -114,7 +114,7 @@ def minimizer(discs: SoftDiscs) -> fire.Minimizer:
 
 def relax(discs: SoftDiscs) -> Relaxed:
     """Minimise with the program's own FIRE."""
-    from sandbox.studies.common.clock import clock
+    from sandbox.ensemble.clock import clock
 
     start = clock()
     m = minimizer(discs)

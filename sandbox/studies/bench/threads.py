@@ -13,7 +13,7 @@ from core.relaxation import Relaxation
 from core.threads import most_threads
 from sandbox.studies.bench.report import Row, Section
 from sandbox.studies.bench.scaling import PACKING_FRACTION, SEED_GRAINS, TILES, tiled
-from sandbox.studies.common.clock import in_turn
+from sandbox.studies.bench.times import in_turn
 
 SIZES = (5_000, 20_000, 100_000)
 THREADS = 2

@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from sandbox import __version__
-from sandbox.studies.common.statistics import Demand, Estimate, verdicts
+from sandbox.ensemble.estimates import Estimate
+from sandbox.studies.common.verdicts import Demand, verdicts
 
 DATA_VERSION = 1  # of what a run writes down
 FIRST = 101  # seed that judges; protocols were tried on seeds below

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import islice
 
+from sandbox.ensemble.estimates import Apart, Ratio, Share
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.studies.classics.case import (
@@ -23,7 +24,7 @@ from sandbox.studies.classics.case import (
     where,
     within,
 )
-from sandbox.studies.common.statistics import Apart, Demand, Ratio, Share
+from sandbox.studies.common.verdicts import Demand
 from scenes.parameter import Value
 
 WIDTHS = (2.0, 3.0, 4.0, 5.0)  # of the orifice, in diameters

@@ -10,9 +10,9 @@ import math
 from collections.abc import Sequence
 
 from core.packing import Packing
+from sandbox.ensemble.estimates import Exact
 from sandbox.studies.classics.apparatus import engine, increment, least, plate, withdraw
 from sandbox.studies.classics.case import Asking, Case, Check, Job, Numbers, Row, within
-from sandbox.studies.common.statistics import Exact
 
 STIFFNESS = 50.0  # [k] of a contact
 WEIGHT = 1e-4  # [k R] of a disc: it deforms by as much

@@ -11,9 +11,9 @@ from core.quasistatic import Quasistatic
 from core.rigid import RigidBody, RigidWorld
 from core.settings import Settings
 from core.system import System
+from sandbox.ensemble.estimates import Exact
 from sandbox.studies.classics.apparatus import increment
 from sandbox.studies.classics.case import Asking, Case, Check, Job, Numbers, Row, within
-from sandbox.studies.common.statistics import Exact
 
 LAMBDAS, MU = (0.01, 0.1, 1.0, 10.0, 100.0), 0.1  # of the paper
 STRAIN = 1e-4  # the response is linear to within about as much

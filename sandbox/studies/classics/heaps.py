@@ -13,6 +13,7 @@ from core.packing import PeriodicBox
 from core.quasistatic import Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
+from sandbox.ensemble.estimates import Ratio, Student
 from sandbox.studies.classics.apparatus import engine, increment, plate
 from sandbox.studies.classics.case import (
     Asking,
@@ -25,7 +26,7 @@ from sandbox.studies.classics.case import (
     seeds_of,
     where,
 )
-from sandbox.studies.common.statistics import Demand, Ratio, Student
+from sandbox.studies.common.verdicts import Demand
 
 GRAVITY = 0.002  # [k/R]: what lies below bears some hundredths of k
 FINE = Settings(0.05, 1e-3, force_floor=1e-4, max_iterations=20_000)

@@ -10,6 +10,7 @@ from core import generate, observables
 from core.arrays import Floats
 from core.packing import Packing
 from core.relaxation import Relaxation
+from sandbox.ensemble.estimates import Exact, Student
 from sandbox.studies.classics.case import (
     Asking,
     Case,
@@ -22,7 +23,6 @@ from sandbox.studies.classics.case import (
     where,
     within,
 )
-from sandbox.studies.common.statistics import Exact, Student
 
 # Onset of rigidity.
 

@@ -9,9 +9,10 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sandbox.ensemble.estimates import CONFIDENCE, Exact
 from sandbox.studies.classics.case import FIRST, Case, Check, Row
-from sandbox.studies.common.folder import finite
-from sandbox.studies.common.statistics import CONFIDENCE, FAILS, HOLDS, OPEN, Exact
+from sandbox.studies.common.finite import finite
+from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN
 
 FORMAT = "auxetic-sandbox study of the classics"
 VERSION = 1

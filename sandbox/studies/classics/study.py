@@ -9,13 +9,14 @@ from pathlib import Path
 
 from core.errors import InputError, did_you_mean
 from core.warmup import compile_kernels
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.machine import machine
+from sandbox.ensemble.pool import Pool, Stopped, stopping
+from sandbox.files.folder import write_text
 from sandbox.studies.classics import clogging, discs, grains, heaps, packings
 from sandbox.studies.classics.case import Case, Job, Row, judged
 from sandbox.studies.classics.report import Verdict, as_json, as_markdown, as_table
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.kept import keep, read
-from sandbox.studies.common.pool import Pool, Stopped, stopping
 
 KEPT = "unfinished.jsonl"  # runs so far, until all are there
 CASES: tuple[Case, ...] = (

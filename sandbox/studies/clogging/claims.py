@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from sandbox.ensemble.estimates import Apart, Share
 from sandbox.studies.classics.case import Check
 from sandbox.studies.clogging.fits import (
     ON_THE_GATE,
@@ -26,7 +27,7 @@ from sandbox.studies.clogging.parts import (
     WIDE,
     WIDTHS,
 )
-from sandbox.studies.common.statistics import Apart, Demand, Share
+from sandbox.studies.common.verdicts import Demand
 from sandbox.sweep.sizes import hazard
 from sandbox.sweep.summary import Cell
 

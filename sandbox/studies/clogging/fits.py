@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import Student
+from sandbox.ensemble.estimates import Student
 from sandbox.sweep.sizes import MANY, hazard, memory
 from sandbox.sweep.summary import Cell
 

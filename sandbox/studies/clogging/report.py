@@ -9,14 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.ensemble.estimates import CONFIDENCE
 from sandbox.studies.classics.case import Check
 from sandbox.studies.classics.report import cell as escaped
 from sandbox.studies.classics.report import must, value
 from sandbox.studies.clogging.claims import Claim, Found
 from sandbox.studies.clogging.figure import FIGURE
 from sandbox.studies.clogging.parts import FIRST, PARTS, SAME, SHARES, STRENGTHS, Part
-from sandbox.studies.common.folder import finite
-from sandbox.studies.common.statistics import CONFIDENCE, FAILS, HOLDS, OPEN
+from sandbox.studies.common.finite import finite
+from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN
 from sandbox.sweep.sizes import mean_size
 from sandbox.sweep.summary import Cell
 

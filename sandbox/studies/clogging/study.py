@@ -9,12 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError, did_you_mean
+from sandbox.ensemble.machine import machine
+from sandbox.files.folder import write_text
 from sandbox.studies.classics.case import judged
 from sandbox.studies.clogging.claims import CLAIMS, Found
 from sandbox.studies.clogging.figure import draw_hazard
 from sandbox.studies.clogging.parts import PARTS, WIDTHS, Part
 from sandbox.studies.clogging.report import Verdict, as_json, as_markdown
-from sandbox.studies.common.folder import machine, write_text
 from sandbox.sweep.outcome import FAILED
 from sandbox.sweep.page import write_page
 from sandbox.sweep.pictures import draw_all

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from sandbox import __version__
+from sandbox.ensemble.pool import Stopped
 from sandbox.session.commands import Grab, Move, Protocol, Release
 from sandbox.session.session import Session
-from sandbox.studies.common.pool import Stopped
 from sandbox.studies.hand.tour_claims import BROKEN, play
 from scenes import registry
 from scenes.scene import HAND_STRENGTH

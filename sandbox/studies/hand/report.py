@@ -9,8 +9,8 @@ from collections.abc import Mapping, Sequence
 from statistics import mean, median
 from typing import Any
 
-from sandbox.studies.common.folder import finite
-from sandbox.studies.common.statistics import wilson
+from sandbox.ensemble.estimates import wilson
+from sandbox.studies.common.finite import finite
 from sandbox.studies.hand.jobs import Row
 from sandbox.studies.hand.tour_claims import BROKEN, TENDENCIES
 from scenes.scene import STRONGEST

@@ -8,11 +8,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from core.warmup import compile_kernels
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.machine import machine
+from sandbox.ensemble.pool import Pool, stopping
+from sandbox.files.folder import write_text
 from sandbox.lessons import tours
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.folder import machine, write_text
 from sandbox.studies.common.kept import keep, read
-from sandbox.studies.common.pool import Pool, stopping
 from sandbox.studies.hand.jobs import Job, Row, carry_out
 from sandbox.studies.hand.report import as_json, as_markdown, as_table
 from scenes import registry

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import Student
+from sandbox.ensemble.estimates import Student
 from sandbox.studies.paper.claims import (
     FALLS,
     MORE,

@@ -10,18 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import (
-    FAILS,
-    HOLDS,
-    OPEN,
-    Demand,
-    Estimate,
-    Exact,
-    Ratio,
-    Student,
-    pair,
-    verdicts,
-)
+from sandbox.ensemble.estimates import Estimate, Exact, Ratio, Student
+from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN, Demand, pair, verdicts
 from sandbox.studies.paper.runs import Request, Result
 
 NOT_MEASURED = "not measured"

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
-from sandbox.studies.common.folder import write_bytes
-from sandbox.studies.common.style import RESOLUTION, STYLE, plain_numbers
+from sandbox.ensemble.style import RESOLUTION, STYLE, plain_numbers
+from sandbox.files.folder import write_bytes
 from sandbox.studies.paper.claims import Figure, Line, Panel
 from sandbox.studies.paper.runs import Result
 

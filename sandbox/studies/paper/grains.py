@@ -8,7 +8,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.material import from_paper
-from sandbox.studies.common.statistics import Demand
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.paper.claims import (
     Claim,
     Figure,

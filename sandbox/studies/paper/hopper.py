@@ -11,7 +11,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from core.observables import force_drops
-from sandbox.studies.common.statistics import Apart, Demand, Share
+from sandbox.ensemble.estimates import Apart, Share
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.hand import study as hand
 from sandbox.studies.paper.claims import (
     LESS,

@@ -8,7 +8,8 @@ import numpy as np
 
 from core.arrays import Floats
 from core.observables import force_drops
-from sandbox.studies.common.statistics import Demand, Ratio
+from sandbox.ensemble.estimates import Ratio
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.paper.claims import (
     MORE,
     MUCH,

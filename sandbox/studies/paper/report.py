@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from sandbox.studies.common.folder import finite
-from sandbox.studies.common.statistics import CONFIDENCE, Exact
+from sandbox.ensemble.estimates import CONFIDENCE, Exact
+from sandbox.studies.common.finite import finite
 from sandbox.studies.paper.claims import (
     NOT_MEASURED,
     VERDICTS,

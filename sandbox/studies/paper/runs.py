@@ -18,11 +18,11 @@ from core.errors import InputError
 from core.files import atomic_write
 from core.warmup import compile_kernels
 from sandbox import __version__
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.pool import Pool, Stopped, stopping
 from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.pool import Pool, Stopped, stopping
 from sandbox.studies.hand import jobs as hand_jobs
 from sandbox.studies.paper.probes import PROBES
 from scenes.parameter import Value

@@ -12,7 +12,8 @@ from itertools import islice
 from pathlib import Path
 
 from core.errors import InputError, did_you_mean
-from sandbox.studies.common.folder import machine, write_text
+from sandbox.ensemble.machine import machine
+from sandbox.files.folder import write_text
 from sandbox.studies.paper import bulk as paper_bulk
 from sandbox.studies.paper import grains as paper_grains
 from sandbox.studies.paper import hopper as paper_hopper

@@ -9,7 +9,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.relaxation import StopReason
-from sandbox.studies.common.pool import Stopped
+from sandbox.ensemble.pool import Stopped
 from sandbox.studies.stability.watch import TimeLimit, Watch, fraction_of_allowed
 
 SOLVED, REFUSED, TIME_LIMIT, CRASHED = "solved", "refused", "time limit", "crashed"

@@ -14,8 +14,8 @@ import numpy as np
 
 from core.elasticity import GUARD_AREA
 from sandbox.draw.theme import AUXETIC, MIXED, REGULAR
-from sandbox.studies.common.folder import write_bytes
-from sandbox.studies.common.style import RESOLUTION, STYLE
+from sandbox.ensemble.style import RESOLUTION, STYLE
+from sandbox.files.folder import write_bytes
 from sandbox.studies.stability.case import FAILS, HOLDS, NOT_SOLVED, Outcome
 
 FORMAT, VERSION = "auxetic-sandbox stability", 1

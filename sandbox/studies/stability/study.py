@@ -12,10 +12,11 @@ from pathlib import Path
 
 from core.warmup import compile_kernels
 from sandbox import __version__
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.folder import machine, write_text
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.machine import machine
+from sandbox.ensemble.pool import Pool, stopping
+from sandbox.files.folder import write_text
 from sandbox.studies.common.kept import add, lines
-from sandbox.studies.common.pool import Pool, stopping
 from sandbox.studies.stability import material as stability_material
 from sandbox.studies.stability import numbers as stability_numbers
 from sandbox.studies.stability import paths as stability_paths

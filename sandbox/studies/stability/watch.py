@@ -26,8 +26,8 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment, Quasistatic
 from core.relaxation import FAILED, StopReason
 from core.rigid import Point, RigidBody, RigidWorld
+from sandbox.ensemble.pool import Stopped
 from sandbox.session.session import Session
-from sandbox.studies.common.pool import Stopped
 
 SLICE = 400  # force evaluations between two looks at the clock
 ROUNDING = 1e-9  # of the sum of the magnitudes of what is added up

@@ -14,9 +14,9 @@ from typing import Any
 
 from core.errors import InputError
 from sandbox.draw.pages.explore_page import MapCell
-from sandbox.studies.common.batch import Batch, carry_out_all
-from sandbox.studies.common.extras import require_scipy
-from sandbox.studies.common.pool import Pool
+from sandbox.ensemble.batch import Batch, carry_out_all
+from sandbox.ensemble.pool import Pool
+from sandbox.extras import require_scipy
 from sandbox.sweep.outcome import Found, carry_out
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.summary import Cell, cells

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from core.arrays import Floats
-from sandbox.studies.common.statistics import Demand, Student
+from sandbox.ensemble.estimates import Student
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.paper.claims import (
     SAME,
     SUBLINEAR,

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.shear import yield_stress
-from sandbox.studies.common.statistics import Demand
+from sandbox.studies.common.verdicts import Demand
 from sandbox.studies.paper.claims import (
     MORE,
     MUCH,

@@ -1,4 +1,4 @@
-"""Processes that a study runs in: deaf to Ctrl-C, gone when the study is, replaced when one dies."""
+"""Processes that runs are carried out in: deaf to Ctrl-C, gone when this program is, replaced when one dies."""
 
 from __future__ import annotations
 
@@ -75,11 +75,11 @@ def _begin(stop: Event, parent: int) -> None:
 
 
 class Stopped(Exception):
-    """The study was interrupted."""
+    """The runs are not wanted any more."""
 
 
 def stopping() -> bool:
-    """In a process of a pool: whether the study has been interrupted."""
+    """In a process of a pool: whether what it does is not wanted any more."""
     return _stop is not None and _stop.is_set()
 
 

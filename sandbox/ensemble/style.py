@@ -1,4 +1,4 @@
-"""How figures of studies look."""
+"""How figures look."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from core.errors import InputError
-from sandbox.studies.common import batch
-from sandbox.studies.common.batch import Batch, carry_out_all
+from sandbox.ensemble import batch
+from sandbox.ensemble.batch import Batch, carry_out_all
 
 
 def halve(number: int) -> int:

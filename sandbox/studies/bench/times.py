@@ -1,20 +1,13 @@
-"""Times on a machine that also does other things: processor time of one thread, many short runs, taken in turn."""
+"""Times on a machine that also does other things: many short runs, taken in turn."""
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 
-
-def clock() -> float:
-    """Processor time of this thread [s]: another program that takes its turn does not count.
-
-    On Windows that clock ticks 64 times a second only, so there it is the time on the wall.
-    """
-    return time.perf_counter() if sys.platform == "win32" else time.thread_time()
+from sandbox.ensemble.clock import clock
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,19 @@
-"""Statistics of verdicts: intervals of means, ratios, exponents and shares, and when a difference is no chance. Pure arithmetic.
+"""What was measured, and how sure that is: intervals of means, ratios, exponents and shares. Pure arithmetic.
 
 Every estimate has a value, an interval at any confidence, and two p-values against a bound: how likely so large (``p_above``) or
-so small (``p_below``) a value would come of a true one that is not beyond the bound. A verdict asks for both sides, so "does not
-hold" needs as much evidence as "holds", and what has neither is "not established".
+so small (``p_below``) a value would come of a true one that is not beyond the bound.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from core.arrays import Floats
-
 CONFIDENCE = 0.95
-LEVEL = 1.0 - CONFIDENCE  # of being wrong in any of the verdicts of a study
-HOLDS, FAILS, OPEN = "holds", "does not hold", "not established"
 
 
 class Estimate(Protocol):
@@ -237,63 +231,6 @@ class Apart:
         return float(fisher_exact(table, side).pvalue)
 
 
-@dataclass(frozen=True)
-class Demand:
-    """What a value must be for a statement to hold: beyond ``low``, and short of ``high``."""
-
-    low: float = -math.inf
-    high: float = math.inf
-
-    def holds(self, value: float) -> bool:
-        """Whether a value that is known meets it."""
-        return self.low < value < self.high
-
-    def p(self, estimate: Estimate) -> tuple[float, float]:
-        """p-values (of the statement being false, of its being true): what is small can be excluded.
-
-        Between two bounds both must be met, two one-sided tests (Schuirmann 1987, doi:10.1007/BF01068419); to miss either is
-        enough, which gives two chances to be wrong.
-        """
-        met, missed = [], []
-        if math.isfinite(self.low):
-            met.append(estimate.p_above(self.low))
-            missed.append(estimate.p_below(self.low))
-        if math.isfinite(self.high):
-            met.append(estimate.p_below(self.high))
-            missed.append(estimate.p_above(self.high))
-        return max(met), min(1.0, len(missed) * min(missed))
-
-
-def holm(p: Sequence[float]) -> list[float]:
-    """p-values such that all of those below a level together are wrong no more often than that (Holm 1979, jstor:4615733)."""
-    order = sorted(range(len(p)), key=p.__getitem__)
-    adjusted, largest = [1.0] * len(p), 0.0
-    for rank, k in enumerate(order):
-        largest = max(largest, min(1.0, (len(p) - rank) * p[k]))
-        adjusted[k] = largest
-    return adjusted
-
-
-def verdicts(
-    cases: Sequence[tuple[Estimate, Demand]], level: float = LEVEL
-) -> list[tuple[str, float]]:
-    """(verdict, p-value after Holm's correction over all of them) of each case.
-
-    Each verdict is two-sided: it may fall either way, so it counts twice the smaller p-value. Exact numbers are no matter of
-    chance, and are not counted.
-    """
-    sides = [demand.p(estimate) for estimate, demand in cases]
-    chance = [k for k, (estimate, _) in enumerate(cases) if not isinstance(estimate, Exact)]
-    corrected = dict(
-        zip(chance, holm([min(1.0, 2.0 * min(sides[k])) for k in chance]), strict=True)
-    )
-    found = []
-    for k, (false, true) in enumerate(sides):
-        p = corrected.get(k, min(false, true))
-        found.append((OPEN if p >= level else HOLDS if false < true else FAILS, p))
-    return found
-
-
 def wilson(hits: int, count: int) -> tuple[float, float]:
     """Interval of a share at 95 %."""
     return Share(hits, count).interval()
@@ -315,12 +252,3 @@ def _tail(distance: float, error: float, freedom: float) -> float:
     from scipy.stats import t
 
     return float(t.sf(distance / error, freedom))
-
-
-def pair(
-    one: Sequence[tuple[int, float]], other: Sequence[tuple[int, float]]
-) -> tuple[Floats, Floats]:
-    """Values of (seed, value) for the seeds that both have, in the order of seeds, (S,) each."""
-    first, second = dict(one), dict(other)
-    seeds = sorted(first.keys() & second.keys())
-    return np.array([first[s] for s in seeds]), np.array([second[s] for s in seeds])
