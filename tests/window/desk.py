@@ -41,8 +41,8 @@ class Desk:
     def paused(self) -> bool:
         return self.app.stage.panes.paused
 
-    def start(self) -> None:
-        self.app.stage.start("intruder")
+    def start(self, scene: str = "intruder") -> None:
+        self.app.stage.start(scene)
         self.until(lambda: not self.app._splash)
 
     def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:

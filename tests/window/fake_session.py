@@ -150,6 +150,7 @@ class FakeSession:
         )
         return replace(
             self._still,
+            scene=self.scene,
             packing=self.packing,
             seed=self.seed,
             increment=self.increments,

@@ -476,6 +476,40 @@ def test_what_the_solver_refuses_is_shown_as_it_was(desk: Desk) -> None:
     desk.until(lambda: value(desk, SHARE) == pytest.approx(0.5), seconds=10)
 
 
+SWITCHES = [
+    (name, parameter.name, bool(parameter.default))
+    for name in registry.names()
+    for parameter in registry.get(name).parameters
+    if parameter.kind == "switch"
+]
+
+
+@pytest.mark.parametrize(("scene", "parameter", "default"), SWITCHES)
+def test_every_switch_of_every_scene_is_taken(scene: str, parameter: str, default: bool) -> None:
+    """By mouse and by every key that means it. A bool is a whole number to Python, and not to a parameter."""
+    desk = Desk((1024, 720))
+    try:
+        desk.start(scene)
+        desk.app.tick()
+        name = f"geometry/{parameter}"
+        desk.click(box(desk, name).center)
+        desk.until(lambda: sent(desk) == [Change(parameter, not default)])
+        for key, on in (
+            (pygame.K_SPACE, default),
+            (pygame.K_RIGHT, True),
+            (pygame.K_LEFT, False),
+            (pygame.K_RETURN, True),
+            (pygame.K_DELETE, default),
+        ):
+            go_to(desk, name)
+            desk.key(key)
+            desk.until(
+                lambda on=on: desk.session.changed.get(parameter, default) is on  # type: ignore[misc]
+            )
+    finally:
+        desk.app.close()
+
+
 # -- typing --
 
 
