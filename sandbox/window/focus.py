@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import pygame
 
-from sandbox.window.keys import sign_of
+from sandbox.window.keyboards import sign_of
 from sandbox.window.parts import Silent
 
 CANVAS = "canvas"  # names of stops on a canvas begin so; the keyboard is there at first

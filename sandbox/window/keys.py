@@ -1,14 +1,13 @@
-"""Which key means what. Letters and signs go by what is printed on the key, in any layout; where letters of another script are
-printed, by what a keyboard with Latin letters has in that place."""
+"""Which key means what; ``keyboards`` says what a key writes."""
 
 from __future__ import annotations
 
 import enum
-import string
-import unicodedata
 from collections.abc import Sequence
 
 import pygame
+
+from sandbox.window.keyboards import letter_of, sign_of
 
 
 class Action(enum.Enum):
@@ -116,39 +115,21 @@ _KEYS = {
 _COMMANDS = {"z": Action.UNDO, "y": Action.REDO, "s": Action.SAVE}
 _BRACKETS = ("[", "]")
 
-# What a keyboard with Latin letters has where others have letters of their own.
-_PLACES = {pygame.KSCAN_A + rank: letter for rank, letter in enumerate(string.ascii_lowercase)}
-_PLACES |= {pygame.KSCAN_LEFTBRACKET: "[", pygame.KSCAN_RIGHTBRACKET: "]"}
-_PLACES |= {pygame.KSCAN_COMMA: ",", pygame.KSCAN_PERIOD: "."}
-
 
 def action_of(event: pygame.event.Event) -> Action | None:
     """What a KEYDOWN event asks for, if anything."""
     if event.key in _KEYS:
         return _KEYS[event.key]
-    mod, sign = getattr(event, "mod", 0), sign_of(event)
-    letter = _latin(chr(event.key), event) if 0 < event.key <= 0xFFFF else ""
+    mod, letter = getattr(event, "mod", 0), letter_of(event)
     if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and letter in _COMMANDS:
         again = letter == "z" and mod & pygame.KMOD_SHIFT
         return Action.REDO if again else _COMMANDS[letter]
     if mod & (pygame.KMOD_CTRL | pygame.KMOD_ALT | pygame.KMOD_META):
         # AltGr, with which many keyboards write brackets, may come as Ctrl and Alt.
-        return _SIGNS[sign] if sign in _BRACKETS else None
-    sign = sign or (chr(event.key) if 0 < event.key < 128 else "")
+        written = getattr(event, "unicode", "")
+        return _SIGNS[written] if written in _BRACKETS else None
+    sign = sign_of(event)
     return _SIGNS.get(sign) or _SIGNS.get(sign.lower())
-
-
-def sign_of(event: pygame.event.Event) -> str:
-    """The sign that a KEYDOWN event writes, if it writes one."""
-    return _latin(getattr(event, "unicode", ""), event)
-
-
-def _latin(sign: str, event: pygame.event.Event) -> str:
-    """The sign, or what is in its place on a keyboard with Latin letters if it is a letter of another script."""
-    if not sign.isalpha() or unicodedata.name(sign[0], "LATIN").startswith("LATIN"):
-        return sign
-    place = _PLACES.get(getattr(event, "scancode", 0), sign)
-    return place.upper() if sign.isupper() else place
 
 
 def packing_for(action: Action, packings: Sequence[str], current: str) -> str | None:
