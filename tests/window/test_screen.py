@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -72,3 +74,41 @@ def test_menu_to_a_scene_by_keyboard(person: Person) -> None:
         _, errors = program.communicate(timeout=30)
     assert program.returncode == 0, errors
     assert errors == ""
+
+
+# X keycodes of the keys for A and Z, by what is printed on them or stands in their place.
+KEYBOARDS = {"de": (38, 29), "fr": (24, 25), "ru": (38, 52), "gr": (38, 52)}
+CAPS_LOCK, CONTROL = 66, 37
+
+
+@pytest.mark.skipif(not shutil.which("setxkbmap"), reason="needs setxkbmap on the path")
+def test_keys_of_other_keyboards(person: Person) -> None:
+    """The drive, undo with Caps Lock on and with Ctrl: on each keyboard the same commands."""
+    log = person.folder / "run.jsonl"
+
+    def told() -> tuple[list[str], int]:
+        """Commands so far, and increments."""
+        text = log.read_text(encoding="utf-8") if log.exists() else ""
+        lines = [json.loads(line) for line in text.splitlines() if line.endswith("}")]
+        increments = [line["end"] for line in lines if "end" in line]
+        return [line["command"] for line in lines if "command" in line], max(increments, default=0)
+
+    with play(person, "single_grain", "--log", str(log)) as program:
+        wait_for(person.find_window, 60, "the window")
+        wait_for(lambda: person.knob() is not None, 180, "the scene: the first start compiles")
+        wanted = 0
+        for keyboard, (drive, undo) in KEYBOARDS.items():
+            subprocess.run(["setxkbmap", keyboard], env=person.environment, check=True)
+            for keys in ((CAPS_LOCK, undo, CAPS_LOCK), (f"{CONTROL}+{undo}",)):
+                before = told()[1]
+                person.key(str(drive))
+                wait_for(lambda before=before: told()[1] > before, 20, f"the drive on {keyboard}")  # type: ignore[misc]
+                for key in keys:
+                    person.key(str(key))
+                wanted += 1
+                wait_for(
+                    lambda wanted=wanted: told()[0] == ["protocol", "undo"] * wanted,  # type: ignore[misc]
+                    20,
+                    f"undo on {keyboard}",
+                )
+        program.kill()
