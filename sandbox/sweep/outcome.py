@@ -35,8 +35,12 @@ CLOGGED, EMPTIED, NEVER, THROUGH, CENSORED, FAILED = (
     "censored",
     "failed",
 )
-STOPPED = (LOCKED, CLOGGED, NEVER)  # by the grains
-DECIDED = (*STOPPED, EMPTIED, THROUGH)  # of the others nobody knows what they would have come to
+STOPPED = (LOCKED, CLOGGED)  # by the grains
+# What can become of grains that move: a share that stops is one of these. What never started was made so, and is no clog; of what
+# was broken off or failed nobody knows what it would have come to.
+DECIDED = (*STOPPED, EMPTIED, THROUGH)
+OUTCOMES = (*DECIDED, NEVER, CENSORED, FAILED)
+HELD = (*STOPPED, NEVER)  # an arch may stand
 
 
 @dataclass(frozen=True)
@@ -103,7 +107,7 @@ class Watch:
         out = run.course.out
         if run.setup.outlet is None or out == self.begun:
             return
-        arch = self.arch if ended in STOPPED else None
+        arch = self.arch if ended in HELD else None
         self.avalanches.append(
             {
                 "avalanche": len(self.avalanches) + 1,
@@ -172,7 +176,7 @@ def described(job: Job, watch: Watch, seconds: float) -> Found:
     run = watch.session.run
     outcome, why = watch.outcome(job.steps)
     watch.close(outcome)
-    arch = watch.arch if outcome in STOPPED else None
+    arch = watch.arch if outcome in HELD else None
     reasons = run.history.column("stop_reason")[1:]
     beyond = run.history.column("beyond_cone")[1:]
     told: dict[str, Entry] = {

@@ -11,12 +11,13 @@ from sandbox.files.folder import prepare_folder, write_text
 from sandbox.sweep.outcome import FAILED
 from sandbox.sweep.pictures import View, axis_label
 from sandbox.sweep.request import Request
-from sandbox.sweep.summary import Cell
+from sandbox.sweep.summary import SHARES_OF, Cell
 
 PAGE, PLAYERS = "index.html", "players"
 TOLD = (
-    "In each cell: how often the grains stopped, with Wilson's interval of 95 %, how many runs, and one of them with the outcome "
-    "that most of them have. In the map hatching marks intervals wider than 0.3, close hatching wider than 0.5."
+    "In each cell: how often the grains stopped, with Wilson's interval of 95 %, of how many runs, and one of all with the "
+    f"outcome that most of them have. {SHARES_OF}. In the map hatching marks intervals wider than 0.3, close hatching wider than "
+    "0.5."
 )
 STYLE = """
 body { font: 16px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 72em; padding: 0 1em; color: #111; }
@@ -110,7 +111,9 @@ def _cell(folder: Path, cell: Cell, players: Mapping[int, str]) -> str:
     )
     share = cell.stopped
     if share is None:
-        return f"<td>{len(cell.runs)} runs<small>{what}</small></td>"
+        return (
+            f"<td>{escape(cell.told)}<small>{len(cell.runs)} runs</small><small>{what}</small></td>"
+        )
     low, high = share.interval()
     ground = int(CIVIDIS[round(255 * share.value)])
     colour = "#fff" if share.value < 0.5 else "#000"

@@ -28,7 +28,7 @@ ASIDE = 0.008  # of the axis
 LEAST_CLOGS = 5  # for a line of survival
 # Widths of an interval from which on a cell is hatched: fifty runs at one half are at 0.27.
 UNSURE = ((0.5, "////"), (0.3, "//"))
-STOPS = "probability that the grains stop"
+STOPS = "share that stops, of what has started"
 
 Group = tuple[str, list[Cell]]
 
@@ -123,6 +123,8 @@ def heat_map(axes: Any, request: Request, some: Sequence[Cell]) -> None:
         column, row = across.index(cell.values[0]), up.index(cell.values[1])
         share = cell.stopped
         if share is None:
+            told = cell.told.replace(" ", "\n")
+            axes.text(column, row, told, fontsize=8.0, color="#555555", ha="center", va="center")
             continue
         grid[row, column] = share.value
         low, high = share.interval()

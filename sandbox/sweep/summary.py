@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from sandbox.ensemble.estimates import Share
-from sandbox.sweep.outcome import CENSORED, CLOGGED, DECIDED, FAILED, STOPPED
+from sandbox.sweep.outcome import CENSORED, CLOGGED, DECIDED, FAILED, NEVER, STOPPED
 from sandbox.sweep.request import Request
 from sandbox.sweep.tables import Row, Tables
 from scenes.parameter import Value
 
 MOST_LINES = 60  # cells that are told of in a terminal
+SHARES_OF = "Shares are of runs whose grains had started and whose outcome is known"
 
 
 @dataclass(frozen=True)
@@ -35,9 +36,18 @@ class Cell:
 
     @property
     def stopped(self) -> Share | None:
-        """The share that the grains stopped, of those whose outcome is known; None of none."""
-        told = [row["outcome"] for row in self.runs if row["outcome"] in DECIDED]
-        return Share(sum(one in STOPPED for one in told), len(told)) if told else None
+        """The share that the grains stopped, of those that had started and whose outcome is known; None of none."""
+        known = [row["outcome"] for row in self.runs if row["outcome"] in DECIDED]
+        return Share(sum(one in STOPPED for one in known), len(known)) if known else None
+
+    @property
+    def told(self) -> str:
+        """The share in words, with its interval and of how many; where there is none, what most of the runs came to."""
+        share = self.stopped
+        if share is None:
+            return str(self.example["outcome"])
+        low, high = share.interval()
+        return f"{share.value:.2f} ({low:.2f} to {high:.2f}), {share.count} runs"
 
     @property
     def example(self) -> Row:
@@ -121,6 +131,10 @@ def _totals(request: Request, found: Iterable[Cell]) -> Iterator[str]:
     took = f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.1f} minutes"
     yield f"{len(rows)} of {request.runs} runs, {took} of one core"
     for outcome, words in (
+        (
+            NEVER,
+            "never started, at rest before a grain had left: no clogs, and not counted in the shares",
+        ),
         (CENSORED, "were broken off before their outcome was known: not counted in the shares"),
         (FAILED, "failed: the same command tries them again"),
     ):

@@ -27,7 +27,7 @@ from sandbox.ensemble.machine import machine
 from sandbox.files.folder import prepare_folder, write_text
 from sandbox.interrupts import deferred
 from sandbox.sweep.columns import AVALANCHE, columns
-from sandbox.sweep.outcome import CENSORED, DECIDED, FAILED, Found
+from sandbox.sweep.outcome import FAILED, OUTCOMES, Found
 from sandbox.sweep.request import Job, Request
 from scenes.parameter import shown
 
@@ -187,7 +187,7 @@ def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
 
 def _is_sound(row: Row) -> bool:
     """Are the numbers of a row such, and is its outcome one?"""
-    if not row["row"].strip("0") or row.get("outcome", FAILED) not in (*DECIDED, CENSORED, FAILED):
+    if not row["row"].strip("0") or row.get("outcome", FAILED) not in OUTCOMES:
         return False
     if row.get("outcome", FAILED) != FAILED and not all(row[name] for name in NEEDED):
         return False

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,15 +21,18 @@ pytest.importorskip("scipy")
 from core.errors import InputError
 from sandbox.cli import main as cli
 from sandbox.ensemble.batch import LOST
+from sandbox.ensemble.estimates import Share
 from sandbox.files.folder import write_text
 from sandbox.session.session import Session
 from sandbox.sweep import outcome, summary, sweep
 from sandbox.sweep.asking import ask
 from sandbox.sweep.outcome import AT_REST, CENSORED, CLOGGED, EMPTIED, NEVER, Found, carry_out
+from sandbox.sweep.pictures import heat_map
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.sweep import Ways
 from sandbox.sweep.tables import ASKED, AVALANCHES, LOCK, RUNS, Tables, made, read_request
-from tests.sweep.conftest import fake
+from sandbox.window.explore.explorer import shown
+from tests.sweep.conftest import fake, invented
 
 REPOSITORY = Path(__file__).parents[2]
 SMALL = {"grains": 24, "width": 10.0, "shake": 0.0, "fall": 0.3}
@@ -114,6 +118,40 @@ def test_a_hand_locks_or_runs_through() -> None:
     run = carry_out(flowing.job(1)).run
     assert int(run["out"]) > 0
     assert (run["outcome"], run["left"]) == ("ran through", 24 - int(run["out"]))
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_what_never_started_is_no_clog(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In no share, and told beside it: in the lines of the terminal, on the page, on the map, in the study."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+
+    endings = {1: CLOGGED, 3: NEVER, 5: EMPTIED, 7: CENSORED}  # all others: never started
+
+    def drain(job: Job) -> Found:
+        ended = endings.get(job.row, NEVER)
+        return invented(job, ended, 0 if ended == NEVER else 9)
+
+    monkeypatch.setattr(sweep, "carry_out", drain)
+    assert cli.main(["sweep", *WORDS, "--seeds", "4", "--pictures", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    some, none = summary.cells(go(tmp_path, read_request(tmp_path)))
+    assert some.stopped == Share(1, 2)
+    assert some.told == "0.50 (0.09 to 0.91), 2 runs"
+    assert none.stopped is None
+    assert none.told == "never started"
+    assert "5 never started" in said
+    page = (tmp_path / "index.html").read_text()
+    assert "0.50<small>0.09 to 0.91, 2 runs" in page
+    assert "<td>never started" in page
+    assert shown(none).share is None
+    assert shown(some).share == 0.5
+    request = ask("gravity_hopper", ["orifice=1.5,3.5", "fall=0.3"], "regular", "1", {})
+    axes = Figure().add_subplot()
+    heat_map(axes, request, [replace(cell, values=(*cell.values, 0.3)) for cell in (some, none)])
+    assert [text.get_text() for text in axes.texts] == ["0.50", "never\nstarted"]
 
 
 # Tables.

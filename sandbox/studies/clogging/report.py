@@ -19,7 +19,7 @@ from sandbox.studies.clogging.parts import FIRST, PARTS, SAME, SHARES, STRENGTHS
 from sandbox.studies.common.finite import finite
 from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN
 from sandbox.sweep.sizes import mean_size
-from sandbox.sweep.summary import Cell
+from sandbox.sweep.summary import SHARES_OF, Cell
 
 FORMAT, VERSION = "auxetic-sandbox study of clogging", 1
 Verdict = tuple[Claim, Check, str, float]
@@ -57,7 +57,7 @@ def as_markdown(verdicts: Sequence[Verdict], found: Found, about: Mapping[str, A
             "",
             *dict.fromkeys(f"- {must(check)}: {check.reason}." for _, check, _, _ in mine),
         ]
-    lines += ["", "## Probability that the grains stop", "", *_shares(found)]
+    lines += ["", "## Probability that the grains stop", "", f"{SHARES_OF}.", "", *_shares(found)]
     lines += [
         "",
         "## What the answer depends on",
@@ -83,7 +83,7 @@ def _shares(found: Found) -> Iterator[str]:
         yield "|" + " --- |" * (len(names) + 5)
         for cell in cells:
             counts = ", ".join(f"{n} {name}" for name, n in sorted(cell.outcomes.items()))
-            told = [*(f"{v:g}" for v in cell.values), cell.packing, _told(cell), counts]
+            told = [*(f"{v:g}" for v in cell.values), cell.packing, cell.told, counts]
             told += [_out(cell), _mean_size(cell)]
             yield f"| {' | '.join(told)} |"
         yield ""
@@ -96,9 +96,9 @@ def _same(found: Found) -> Iterator[str]:
         for part in (part for part, mine in SAME if mine is base):
             name = part.axes[0].partition("=")[0]
             for cell in found[part.name]:
-                yield f"| {part.title} | {name} {cell.values[0]:g} | {cell.packing} | {_told(cell)} | {_out(cell)} |"
+                yield f"| {part.title} | {name} {cell.values[0]:g} | {cell.packing} | {cell.told} | {_out(cell)} |"
         for cell in _bases(base, found):
-            yield f"| {base.scene}, as in its map | | {cell.packing} | {_told(cell)} | {_out(cell)} |"
+            yield f"| {base.scene}, as in its map | | {cell.packing} | {cell.told} | {_out(cell)} |"
 
 
 def _bases(base: Part, found: Found) -> Iterator[Cell]:
@@ -124,14 +124,6 @@ def _costs(found: Found) -> Iterator[str]:
             f"| {part.name} | {len(seconds)} | {seconds.sum() / 60.0:.1f} | {seconds.mean():.2f} | {seconds.max():.1f} |"
         )
     yield f"| all | {runs} | {total / 60.0:.1f} | {total / max(runs, 1):.2f} | |"
-
-
-def _told(cell: Cell) -> str:
-    share = cell.stopped
-    if share is None:
-        return "not known"
-    low, high = share.interval()
-    return f"{share.value:.2f} ({low:.2f} to {high:.2f}), {share.count} runs"
 
 
 def _out(cell: Cell) -> str:
