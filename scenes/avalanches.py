@@ -58,6 +58,7 @@ class Avalanches(Scene):
         "At each drop of the stress, the grains whose forces have changed most light up."
     )
     default_steps = 336
+    handle_names = ("box",)
     parameters = (
         Parameter("grains", 400, "", 60, 4000, "number of grains, exactly"),
         Parameter("pressure", 0.06, "k", 0.002, 0.2, "pressure at the start, within 1 %"),

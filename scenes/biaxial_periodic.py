@@ -50,6 +50,7 @@ class BiaxialPeriodic(Scene):
         "Drag its corner to shrink it; auxetic grains give way, regular ones push back."
     )
     default_steps = 40
+    handle_names = ("box",)
     parameters = (
         Parameter("grains", 500, "", 50, 5000, "number of grains, exactly"),
         Parameter(

@@ -52,6 +52,7 @@ class BiaxialPress(Scene):
         "Auxetic grains just shrink; regular ones cannot, and push back."
     )
     default_steps = 52
+    handle_names = ("lid",)
     parameters = (
         Parameter("grains", 100, "", 10, 2000, "number of grains; the press grows with it"),
         Parameter(

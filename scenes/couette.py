@@ -64,6 +64,7 @@ class Couette(Scene):
         "Drag the upper plate: regular grains resist more, unless the pressure is the same."
     )
     default_steps = 432
+    handle_names = ("upper plate",)
     parameters = (
         Parameter(
             "grains",

@@ -53,6 +53,7 @@ class GrainRow(Scene):
         "Regular grains push their neighbours and the walls; auxetic grains make room."
     )
     default_steps = 60
+    handle_names = ("piston",)
     parameters = (
         Parameter("grains", 7, "", 1, 100, "number of grains in the row"),
         Parameter(

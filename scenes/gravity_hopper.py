@@ -67,6 +67,7 @@ class GravityHopper(Scene):
         "When an arch blocks it, take the funnel and shake it."
     )
     default_steps = 960
+    handle_names = ("funnel",)
     parameters = (
         Parameter("grains", 200, "", 20, 2000, "number of grains, near enough"),
         Parameter(

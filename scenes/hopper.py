@@ -53,6 +53,7 @@ class Hopper(Scene):
     question = "Why does this hopper lock, and that one not?"
     about = "A piston pushes grains through an orifice a few grains wide. Watch arches form, carry force, and break."
     default_steps = 440
+    handle_names = ("piston",)
     parameters = (
         Parameter(
             "grains", 300, "", 20, 3000, "number of grains, near enough; the channel grows with it"

@@ -42,6 +42,7 @@ class Intruder(Scene):
         "Among regular grains the hand is soon locked; among auxetic ones it goes on."
     )
     default_steps = 400
+    handle_names = ("intruder",)
     parameters = (
         Parameter(
             "grains", 600, "", 50, 5000, "number of grains, near enough; the box grows with it"

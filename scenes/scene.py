@@ -206,6 +206,7 @@ class Scene(ABC):
     about: ClassVar[str]
     parameters: ClassVar[tuple[Parameter, ...]]
     default_steps: ClassVar[int]
+    handle_names: ClassVar[tuple[str, ...]]  # of the bodies that a person can drag, whatever is set
     packings: ClassVar[tuple[str, ...]] = KINDS
 
     @property

@@ -54,6 +54,7 @@ class SingleGrain(Scene):
         "At first both are equally stiff; only their width tells them apart."
     )
     default_steps = 80
+    handle_names = ("plate",)
     parameters = (
         Parameter(
             "poisson_ratio",

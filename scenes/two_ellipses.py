@@ -49,6 +49,7 @@ class TwoEllipses(Scene):
         "The contact law measures along the line of centres: never late, a little early."
     )
     default_steps = round(180.0 / TURN)
+    handle_names = (GRAIN, *TIPS)
     parameters = (
         Parameter("aspect", 1.4, "", 1.0, 3.0, "length over width of both ellipses"),
         Parameter("radius", 1.0, "R", 0.4, 1.0, "mean radius of the right grain; the left has 1 R"),

@@ -38,6 +38,7 @@ class Workshop(Scene):
         "Draw walls, place grains of both kinds, push, and keep what you made as a file."
     )
     default_steps = 1000
+    handle_names = ("intruder",)
     parameters = (
         Parameter("grains", 40, "", 0, 3000, "number of grains at the start"),
         Parameter("width", 31.0, "R", 8.0, 120.0, "width of the box"),

@@ -92,7 +92,7 @@ def circle_through(start: str) -> list[str]:
 STUDY = "studies.common ensemble files session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "studies.clogging studies.common ensemble site record player files session words scenes core",
+    "studies.clogging studies.common ensemble site record player files lessons session words scenes core",
     "window": "window.solvers sweep ensemble record player files draw lessons session words scenes core",
     "sweep": "ensemble files record draw session scenes core",
     "window.solvers": "files session words scenes core",
@@ -109,7 +109,7 @@ ROOMS = {
     "studies.hand": f"lessons {STUDY}",
     "studies.common": "ensemble core",
     "ensemble": "core",
-    "lessons": "session scenes core",
+    "lessons": "words session scenes core",
     "files": "session scenes core",
     "draw": "draw.raster session words scenes core",
     "draw.raster": "core",

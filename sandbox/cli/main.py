@@ -131,7 +131,7 @@ def _add_play(command: Command) -> None:
         "scene",
         nargs="?",
         metavar="SCENE",
-        help="name of a scene, a scene file FILE.scene, or a run DIR#ROW of a sweep; without it: a menu",
+        help="name or file of a scene or a lesson (FILE.scene, LESSON.toml), or a run DIR#ROW of a sweep; without it: a menu",
     )
     _add_scene_options(play)
     _add_compare(play)

@@ -22,6 +22,7 @@ from scenes.text import counted
 
 if TYPE_CHECKING:
     from sandbox.files.table import Spelling
+    from sandbox.lessons.lesson import Lesson
     from sandbox.record.record import Outcome, Output
     from sandbox.session.beginning import SceneFile
     from sandbox.session.session import Session
@@ -49,7 +50,12 @@ def play(options: argparse.Namespace) -> int:
 
     language.use(options.language or language.of_environment())
     log = arguments.output_file("--log", options.log, [".jsonl"]) if options.log else None
-    if options.scene is None:
+    lesson = _lesson(options.scene)
+    if lesson is not None:
+        for name in ("packing", "seed", "set", "compare"):
+            if getattr(options, name) not in (None, []):
+                raise InputError(f"--{name}: a lesson brings its own; leave this out")
+    if options.scene is None or lesson is not None:
         if options.set:
             raise InputError("--set needs a scene: write play SCENE --set NAME=VALUE")
         if options.compare:
@@ -77,6 +83,7 @@ def play(options: argparse.Namespace) -> int:
         log=log,
         packings=options.compare or (),
         script=_row(options.scene) is not None,
+        lesson=lesson,
         looks=Looks(options.size, options.scale, options.theme, options.view),
     )
 
@@ -273,6 +280,8 @@ def _session(options: argparse.Namespace) -> Session:
     """The session that the options describe, checked but not built."""
     from sandbox.session.session import Session
 
+    if _lesson(options.scene) is not None:
+        raise InputError(f"{options.scene} is a lesson: write play {options.scene}")
     row = _row(options.scene)
     if row is not None:
         for name in ("packing", "seed", "set", "compare"):
@@ -319,6 +328,16 @@ def _row(scene: str | None) -> Made | None:
     from sandbox.sweep.tables import is_sweep, made
 
     return made(Path(folder), row) if is_sweep(folder) else None
+
+
+def _lesson(scene: str | None) -> Lesson | None:
+    """The lesson of that name, or in that file; None where it is something else."""
+    from sandbox.lessons import classroom
+    from sandbox.lessons.reading import is_meant, read_lesson
+
+    if scene in classroom.names():
+        return classroom.lesson(scene)
+    return read_lesson(scene) if scene is not None and is_meant(Path(scene)) else None
 
 
 def _is_file(scene: str) -> bool:

@@ -1,1 +1,1 @@
-"""What leads through the scenes: guided tours, as data."""
+"""What leads through the scenes: lessons and guided tours, as data."""

@@ -16,6 +16,7 @@ from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.warmup import Warmup
 from sandbox.files import autosave
 from sandbox.interrupts import requests_to_end
+from sandbox.lessons.lesson import Lesson
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Protocol
 from sandbox.window.actions import Actions
@@ -56,9 +57,10 @@ def run(
     log: str | os.PathLike[str] | None = None,
     packings: Sequence[str] = (),
     script: bool = False,
+    lesson: Lesson | None = None,
     looks: Looks = USUAL,
 ) -> int:
-    """Open the window and stay until it is closed. Without a scene, or a file of one, it starts with the menu.
+    """Open the window and stay until it is closed. Without a scene, a file of one or a lesson, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``script``: the scene's own drive is on from the start. ``log``: where the log
     of the last scene started is written, all the time. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the
@@ -74,7 +76,9 @@ def run(
             app.stage.toast(words.FILMS_FOUND.format(names=words.LIST_SIGN.join(films)))
         clean = False
         try:
-            if scene is None:
+            if lesson is not None:
+                app.guide.begin(lesson)
+            elif scene is None:
                 app.pages.open_menu()
             elif isinstance(scene, SceneFile):
                 app.stage.open(scene)

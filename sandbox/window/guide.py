@@ -1,4 +1,4 @@
-"""The guided tour in the window: a card that asks, waits until it is done, and explains.
+"""A guided tour or a lesson in the window: a card that asks, waits until it is done, and explains.
 
 It stands above the panel; where there is no panel, in the corner of the canvas where it covers no handle and the fewest grains.
 """
@@ -21,7 +21,8 @@ from sandbox.draw.pages.tour_card import (
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import Type
 from sandbox.lessons import tours
-from sandbox.lessons.tours import Moment, Step
+from sandbox.lessons.lesson import Lesson, Step
+from sandbox.lessons.moments import Moment, met
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.stage import Stage
@@ -39,15 +40,14 @@ PLOT_COST = 1_000  # and a covered plot
 
 
 class Guide(Silent):
-    """Which tour is on, which step, and whether it is done."""
+    """Which lesson is on, which step, and whether it is done."""
 
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
-        self.scene = ""
+        self.lesson: Lesson | None = None
         self.index = 0
         self.done = False
         self.told = False  # explained before it is done, as somebody wished
-        self._steps: tuple[Step, ...] = ()
         self._then: Moment | None = None  # what there was when the step began
         self._hover = ""
         self._corner = 0
@@ -56,30 +56,39 @@ class Guide(Silent):
 
     @property
     def on(self) -> bool:
-        """Is a tour on?"""
-        return bool(self._steps)
+        """Is a lesson on?"""
+        return self.lesson is not None
 
     @property
     def step(self) -> Step:
         """The present one."""
-        return self._steps[self.index]
+        assert self.lesson is not None
+        return self.lesson.steps[self.index]
+
+    @property
+    def scene(self) -> str:
+        """That of the present step; nothing where no lesson is on."""
+        return "" if self.lesson is None else self.lesson.scene_of(self.index)
 
     # -- going through it --
 
     def start(self, scene: str) -> None:
         """Begin the tour of a scene."""
-        self._steps, self.scene = tours.steps(scene), scene
-        if not self._steps:
+        found = tours.tour(scene)
+        if found is None:
             self.stage.toast(words.NO_TOUR)
-            return
+        else:
+            self.begin(found)
+
+    def begin(self, lesson: Lesson) -> None:
+        """Begin a lesson."""
+        self.lesson = lesson
         self.stage.has_begun()
-        if not self._steps[0].packings:
-            self.stage.start(scene)
         self._go(0)
 
     def close(self) -> None:
         """No more of it."""
-        self._steps, self._hover = (), ""
+        self.lesson, self._hover = None, ""
         if self.stage.focus.name in (NEXT, BACK, CLOSE):
             self.stage.focus.leave()
         self.stage.redraw(True)
@@ -87,14 +96,19 @@ class Guide(Silent):
     def next(self) -> None:
         """The explanation, if it is not shown yet; else the next step; after the last the end."""
         page = self.page
-        if page.do and not page.why and words.tour_text(self.scene, self.step.key, "why"):
+        if page.do and not page.why and self.step.why:
             self.told = True
-        elif self.index + 1 < len(self._steps):
+        elif not self._last:
             self._go(self.index + 1)
         else:
             self.close()
             self.stage.toast(words.TOUR_OVER)
         self.stage.redraw(True)
+
+    @property
+    def _last(self) -> bool:
+        """Is this the last step?"""
+        return self.lesson is None or self.index + 1 == len(self.lesson.steps)
 
     def back(self) -> None:
         """The step before."""
@@ -104,9 +118,10 @@ class Guide(Silent):
     def _go(self, index: int) -> None:
         self.index, self.done, self.told, self._then = index, False, False, None
         step = self.step
-        if step.packings:
+        # Back over the beginning of another scene: that of the steps before begins anew.
+        if step.packings or self.stage.panes.scene != self.scene:
             try:
-                self._begin(step)
+                self._begin()
             except InputError as error:
                 self.close()
                 self.stage.toast(words.say(message(error)))
@@ -116,11 +131,16 @@ class Guide(Silent):
         self.done = step.until is None
         self.stage.redraw(True)
 
-    def _begin(self, step: Step) -> None:
+    def _begin(self) -> None:
+        """What the present step begins, or the last one before it that does."""
+        assert self.lesson is not None
+        begun = self.lesson.steps[: self.index + 1]
+        step = next(step for step in reversed(begun) if step.packings)
         several = len(step.packings) > 1
         if not several:
             self.stage.panes.packing = step.packings[0]
-        self.stage.start(self.scene, step.settings, step.packings if several else ())
+        packings = step.packings if several else ()
+        self.stage.start(self.scene, step.settings, packings, self.lesson.seed)
 
     def tick(self, now: float) -> bool:
         """Has it been done?"""
@@ -138,7 +158,7 @@ class Guide(Silent):
         moment = Moment.of(there, self.stage.renderer.view.name)
         if self._then is None:
             self._then = moment
-        self.done = tours.met(self.step.until, self._then, moment)
+        self.done = met(self.step.until, self._then, moment)
         return self.done
 
     # -- what a person does --
@@ -214,20 +234,19 @@ class Guide(Silent):
     @property
     def page(self) -> TourPage:
         """What the card shows now."""
-        scene, key = self.scene, self.step.key
-        do = words.tour_text(scene, key, "do")
-        why = words.tour_text(scene, key, "why")
+        assert self.lesson is not None
+        scene, step = self.scene, self.step
+        do, why = str(step.do), str(step.why)
         waiting = bool(do and why and not self.done and not self.told)
         if not self.done:
             # What has not happened yet is not said as if it had.
             why = words.TOUR_AHEAD.format(why=why) if self.told else ""
-        last = self.index + 1 == len(self._steps)
-        onward = words.TOUR_WHY if waiting else words.TOUR_END if last else words.TOUR_NEXT
+        onward = words.TOUR_WHY if waiting else words.TOUR_END if self._last else words.TOUR_NEXT
         return TourPage(
-            title=words.title(scene) or scene,
+            title=str(self.lesson.title) or words.title(scene) or scene,
             step=self.index,
-            steps=len(self._steps),
-            say=words.tour_text(scene, key, "say"),
+            steps=len(self.lesson.steps),
+            say=str(step.say),
             do=do,
             done=self.done,
             why=why,

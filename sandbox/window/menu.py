@@ -15,6 +15,7 @@ from sandbox.draw.pages.menu_layout import (
     FILE,
     KEYS,
     LANGUAGE,
+    LESSON,
     PACKING,
     SCENE,
     START,
@@ -29,6 +30,9 @@ from sandbox.draw.pages.menu_layout import (
 from sandbox.draw.pages.menu_page import draw_menu
 from sandbox.draw.painter import Painter
 from sandbox.files.scene_file import SceneHere, scenes_here
+from sandbox.lessons import classroom, tours
+from sandbox.lessons.classroom import LessonHere, lessons_here
+from sandbox.lessons.lesson import Lesson
 from sandbox.window.keys import Action
 from sandbox.words import language, words
 from scenes import registry
@@ -48,6 +52,7 @@ class Choice:
     scene: str | None = None
     packing: str | None = None
     tour: str | None = None  # of that scene
+    lesson: str | None = None  # its name, or the path of a file
     file: Path | None = None
     what: str = ""
 
@@ -65,6 +70,7 @@ class Menu:
             None  # tells what was left unfinished, if anything was
         )
         self._files: tuple[SceneHere, ...] = ()
+        self._lessons: tuple[LessonHere, ...] = ()
         self._places: MenuLayout | None = None
         self._scene = ""  # that the choice was on last
         self._pointed = ""  # what the mouse is over
@@ -73,6 +79,7 @@ class Menu:
     def open(self, scene: str, folder: Path | None = None) -> None:
         """The menu is shown: look for files, and put the choice on the scene that runs, if one does."""
         self._files = scenes_here(folder or Path.cwd())
+        self._lessons = lessons_here(folder or Path.cwd())
         if scene:
             self.choose(scene)
         elif self.resume:
@@ -97,10 +104,12 @@ class Menu:
                 words.question(scene.name, scene.question),
                 words.first_sentence(words.about(scene.name, scene.about)),
                 scene.name,
-                words.has_tour(scene.name),
+                scene.name in tours.scenes(),
             )
             for scene in self.scenes
         ]
+        cards += [lesson_card(name, classroom.lesson(name)) for name in classroom.names()]
+        cards += [lesson_card(str(here.path), here.lesson) for here in self._lessons]
         cards += [
             Card(
                 FILE + str(file.path),
@@ -205,7 +214,7 @@ class Menu:
 
     def _tour_here(self) -> bool:
         scene = self.chosen.removeprefix(SCENE)
-        return self.chosen.startswith(SCENE) and words.has_tour(scene)
+        return self.chosen.startswith(SCENE) and scene in tours.scenes()
 
     @staticmethod
     def _taken(name: str) -> Choice:
@@ -218,7 +227,20 @@ class Menu:
                 return Choice(file=Path(rest))
             case menu_layout.TOUR:
                 return Choice(tour=rest)
+            case menu_layout.LESSON:
+                return Choice(lesson=rest)
             case menu_layout.PACKING:
                 return Choice(packing=rest)
         whats = (START, TAKE_UP, DISCARD, EXPLORE, LANGUAGE, THEME, KEYS)
         return Choice(what=name if name in whats else "")
+
+
+def lesson_card(name: str, lesson: Lesson | None) -> Card:
+    """A lesson in the menu, by its name or its path; None: what the file says is no lesson."""
+    stem = Path(name).stem
+    if lesson is None:
+        return Card(LESSON + name, stem, words.LESSON_BROKEN.format(name=Path(name).name), "")
+    length = words.LESSON_LENGTH.format(minutes=lesson.minutes, steps=len(lesson.steps))
+    if not lesson.minutes:
+        length = words.LESSON_STEPS.format(steps=len(lesson.steps))
+    return Card(LESSON + name, str(lesson.title) or stem, str(lesson.about), length, lesson.scene)

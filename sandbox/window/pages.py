@@ -12,6 +12,7 @@ from sandbox.draw.pages.help_page import HelpLayout, draw_help
 from sandbox.draw.pages.menu_layout import DISCARD, EXPLORE, KEYS, LANGUAGE, START, TAKE_UP, THEME
 from sandbox.draw.painter import Painter
 from sandbox.files import autosave
+from sandbox.lessons import classroom
 from sandbox.window.explore.page import ExplorePage
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
@@ -156,6 +157,8 @@ class Pages:
             self.stage.start(choice.scene)
         elif choice.tour is not None:
             self.guide.start(choice.tour)
+        elif choice.lesson is not None:
+            self.guide.begin(classroom.named(choice.lesson))
         elif choice.file is not None:
             self.guide.close()
             self.stage.open(choice.file)

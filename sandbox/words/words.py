@@ -33,14 +33,12 @@ __all__ = [
     "about",
     "decimal_sign",
     "first_sentence",
-    "has_tour",
     "help_groups",
     "parameter_help",
     "parameter_name",
     "question",
     "say",
     "title",
-    "tour_text",
     "unit",
 ]
 
@@ -126,17 +124,6 @@ def first_sentence(text: str) -> str:
     """The beginning of a text, to its first full stop."""
     head, stop, _ = text.partition(". ")
     return f"{head}." if stop else text
-
-
-def has_tour(scene: str) -> bool:
-    """Is there a guided tour of a scene?"""
-    return language.find("tours", scene) is not None
-
-
-def tour_text(scene: str, step: str, part: str) -> str:
-    """What a step of a tour says: ``part`` is "say", "do" or "why"; nothing where it has no such part."""
-    found = language.find("tours", scene, step, part)
-    return "" if found is None else str(found)
 
 
 def help_groups() -> list[tuple[str, list[tuple[str, str]]]]:

@@ -79,7 +79,7 @@ def test_a_step_is_done_by_doing_it(touring: Desk) -> None:
     scale = touring.app.stage.renderer.camera.scale
     touring.point((start[0] + 4.0 * scale, start[1]), pressed=True)
     touring.until(lambda: guide.done)
-    assert guide.page.why == words.tour_text("intruder", "through", "why")
+    assert guide.page.why == str(tours.steps("intruder")[1].why)
     touring.release((start[0] + 4.0 * scale, start[1]))
     touring.key(pygame.K_RETURN)
     assert (guide.index, guide.done) == (2, False)
@@ -99,7 +99,7 @@ def test_every_step_by_keyboard_alone(touring: Desk) -> None:
 
 def test_what_has_not_happened_yet_is_not_said_as_if_it_had(touring: Desk) -> None:
     guide = touring.app.guide
-    why = words.tour_text("intruder", "drag", "why")
+    why = str(tours.steps("intruder")[0].why)
     assert guide.page.why == ""
     touring.key(pygame.K_RETURN)  # why?
     assert not guide.page.done

@@ -16,7 +16,7 @@ from sandbox.words import words
 
 START = "start"  # names of what can be pressed
 TAKE_UP, DISCARD = "resume", "discard"
-SCENE, FILE, TOUR, PACKING = "scene/", "file/", "tour/", "packing/"
+SCENE, FILE, TOUR, PACKING, LESSON = "scene/", "file/", "tour/", "packing/", "lesson/"
 LANGUAGE, THEME, KEYS, EXPLORE = "language", "theme", "keys", "explore"
 
 CARD = 380.0  # least width of a card at scale 1 [px]
@@ -28,9 +28,9 @@ QUESTION_LINES, ABOUT_LINES = 3, 3
 
 @dataclass(frozen=True, slots=True)
 class Card:
-    """A scene, or a file with one, in the menu: in the present language."""
+    """A scene, a lesson, or a file with a scene, in the menu: in the present language."""
 
-    name: str  # SCENE or FILE and what it is called
+    name: str  # SCENE, LESSON or FILE and what it is called
     title: str
     question: str
     about: str
@@ -76,8 +76,9 @@ class MenuLayout:
 
     @property
     def cards(self) -> list[pygame.Rect]:
-        """Of scenes and files, unscrolled."""
-        return [rect for name, rect in self.scrolled.items() if name.startswith((SCENE, FILE))]
+        """Of scenes, lessons and files, unscrolled."""
+        kinds = SCENE, LESSON, FILE
+        return [rect for name, rect in self.scrolled.items() if name.startswith(kinds)]
 
     def stops(self) -> list[str]:
         """Where Tab goes, in its order: what scrolls first. Tours are left out: they have a key."""

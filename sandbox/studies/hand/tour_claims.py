@@ -18,7 +18,8 @@ import numpy as np
 from core import observables
 from core.relaxation import FAILED
 from sandbox.lessons import tours
-from sandbox.lessons.tours import Condition, Moment, Step
+from sandbox.lessons.lesson import Condition, Step
+from sandbox.lessons.moments import Moment, met
 from sandbox.session.commands import Change, Command, DrawWall, Grab, Move, Place, Release
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
@@ -353,7 +354,7 @@ def _do(step: Step, panes: Panes, check: Callable[[], None]) -> int | None:
         for pane in panes.values():
             _one_increment(pane, check)
         now = Moment.of([pane.session.frame() for pane in panes.values()], view)
-        if tours.met(until, then, now):
+        if met(until, then, now):
             done = count
             break
     for pane in panes.values():
