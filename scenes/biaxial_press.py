@@ -17,7 +17,7 @@ from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
-from scenes.parameter import Parameter
+from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
@@ -34,6 +34,7 @@ from scenes.scene import (
     solver,
     step,
 )
+from scenes.text import Text
 
 FLOOR = 1.6  # thickness; the ends of the lid slide into it [R]
 LID = 0.8  # thickness [R]
@@ -76,7 +77,13 @@ class BiaxialPress(Scene):
 
     def validate(self, settings: Values) -> None:
         if _square(settings) < LEAST_SIDE:
-            raise InputError("too few grains of these sizes for a press: raise grains")
+            least = float(settings["grains"]) * (LEAST_SIDE / _square(settings)) ** 2
+            raise InputError(
+                Text(
+                    "too few grains of these sizes for a press: it takes {least}, or larger ones",
+                    least=whole_above(least),
+                )
+            )
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

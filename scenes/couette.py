@@ -13,7 +13,7 @@ from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
-from scenes.parameter import Parameter
+from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
@@ -102,7 +102,12 @@ class Couette(Scene):
 
     def validate(self, settings: Values) -> None:
         if _teeth(settings) < LEAST_TEETH:
-            raise InputError("too few grains of these sizes for a cell: raise grains")
+            raise InputError(
+                Text(
+                    "too few grains of these sizes for a cell: it takes {least}, or larger ones",
+                    least=whole_above(LEAST_TEETH * _grains_a_tooth(settings)),
+                )
+            )
 
     def ingredients(self, settings: Values) -> Ingredients:
         return Ingredients(periodic=True, friction=float(settings["friction"]) > 0.0)

@@ -17,7 +17,7 @@ from core.material import (
     contact_stiffness_of,
     from_paper,
 )
-from scenes.parameter import Parameter, Value
+from scenes.parameter import Parameter, Value, round_up
 from scenes.text import Text
 
 KINDS_OF_GRAINS = ("regular", "auxetic")
@@ -137,8 +137,11 @@ def check_material(settings: Mapping[str, Value]) -> None:
         if stiffest > MOST_STIFFNESS:
             raise InputError(
                 Text(
-                    "contacts would be stiffer than {most:g} k: raise softness, or bring stiffness_ratio nearer to 1",
+                    "contacts would be stiffer than {most:g} k: raise softness to {least:g}, "
+                    "or bring stiffness_ratio nearer to 1",
                     most=MOST_STIFFNESS,
+                    # C − 2 falls as one over the softness.
+                    least=round_up(softness * (stiffest - 2.0) / (MOST_STIFFNESS - 2.0)),
                 )
             )
 

@@ -14,7 +14,7 @@ from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
-from scenes.parameter import Parameter
+from scenes.parameter import Parameter, round_down, round_up, whole_above
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
@@ -234,8 +234,9 @@ class Shape:
         self.lip_y = 0.5 * WALL * math.cos(angle)
         self.neck = self.lip_y + (self.half_width - self.lip_x) * math.tan(angle)
         funnel = (self.half_width + self.lip_x) * (self.neck - self.lip_y)
-        grains = float(settings["grains"]) * recipe(settings, "mixed").mean_area()
-        self.channel = (grains / self.fraction - funnel) / (2.0 * self.half_width)
+        self.grains, self.grain = float(settings["grains"]), recipe(settings, "mixed").mean_area()
+        full = self.grains * self.grain / self.fraction
+        self.channel = (full - funnel) / (2.0 * self.half_width)
 
     def outlet(self, y: float, beside: bool) -> Outlet:
         """Grains leave below ``y`` [R], with ``beside`` also where they lie under the funnel's sides."""
@@ -250,10 +251,22 @@ class Shape:
     def check(self, least_channel: float) -> None:
         """Raises InputError unless the lips stand within the channel, and the grains fill so much of it [R] above the funnel."""
         if self.lip_x > self.half_width - 0.5:
-            raise InputError("the orifice is wider than the channel: lower orifice or raise width")
-        if self.channel < least_channel:
+            beyond = self.lip_x - self.half_width + 0.5
             raise InputError(
-                "too few grains to fill the funnel: raise grains, or lower width or angle"
+                Text(
+                    "the orifice is wider than the channel: lower orifice to {most:g}, or raise width to {least:g} R",
+                    most=round_down((self.opening - 2.0 * beyond) / DIAMETER),
+                    least=round_up(2.0 * (self.half_width + beyond)),
+                )
+            )
+        if self.channel < least_channel:
+            missing = (least_channel - self.channel) * 2.0 * self.half_width
+            grains = self.grains + missing * self.fraction / self.grain
+            raise InputError(
+                Text(
+                    "too few grains to fill the funnel: it takes {least}, or a smaller width or angle",
+                    least=whole_above(grains),
+                )
             )
 
 

@@ -9,7 +9,7 @@ from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
-from scenes.parameter import Parameter
+from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
@@ -77,13 +77,20 @@ class Intruder(Scene):
     def _box(settings: Values) -> tuple[float, float]:
         """Width and height of the box [R]. Raises InputError if the intruder does not fit."""
         radius = float(settings["intruder_radius"])
-        grains = float(settings["grains"]) * recipe(settings, "mixed").mean_area()
-        area = grains / float(settings["packing_fraction"]) + math.pi * radius**2
+        grain = recipe(settings, "mixed").mean_area()
+        area = (
+            float(settings["grains"]) * grain / float(settings["packing_fraction"])
+            + math.pi * radius**2
+        )
         height = math.sqrt(area / ASPECT)
         width = area / height
-        if 2.0 * radius + 2.0 * MARGIN > min(width, height):
+        if 2.0 * radius + 2.0 * MARGIN > height:
+            open_area = ASPECT * (2.0 * radius + 2.0 * MARGIN) ** 2 - math.pi * radius**2
             raise InputError(
-                "the intruder does not fit into the box: raise grains or lower intruder_radius"
+                Text(
+                    "the intruder does not fit into the box: it takes {least} grains, or a smaller intruder_radius",
+                    least=whole_above(open_area * float(settings["packing_fraction"]) / grain),
+                )
             )
         return width, height
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import reprlib
 import sys
 from dataclasses import dataclass
@@ -11,6 +12,25 @@ from core.errors import InputError
 Value = float | int | bool
 
 LARGEST_SEED = 2**63 - 1
+HAIR = 1e-9  # of a number that was calculated
+DIGITS = 3
+
+
+def whole_above(value: float) -> int:
+    """The least whole number that is not below ``value``."""
+    return math.ceil(value * (1.0 - HAIR))
+
+
+def round_up(value: float) -> float:
+    """``value``, above 0, in three digits that are not below it."""
+    power = 10.0 ** (math.floor(math.log10(value)) - DIGITS + 1)
+    return float(f"{math.ceil(value / power * (1.0 - HAIR)) * power:.{DIGITS}g}")
+
+
+def round_down(value: float) -> float:
+    """``value``, above 0, in three digits that are not above it."""
+    power = 10.0 ** (math.floor(math.log10(value)) - DIGITS + 1)
+    return float(f"{math.floor(value / power * (1.0 + HAIR)) * power:.{DIGITS}g}")
 
 
 def shown(value: object) -> str:

@@ -8,7 +8,7 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
-from scenes.parameter import Parameter
+from scenes.parameter import Parameter, round_down, round_up
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
@@ -22,6 +22,7 @@ from scenes.scene import (
     solver,
     step,
 )
+from scenes.text import Text
 
 WALL = 0.8  # thickness [R]
 MARGIN = 1.0  # between the disc and the walls at both ends of the scripted push [R]
@@ -57,11 +58,22 @@ class Workshop(Scene):
         radius = float(settings["intruder_radius"])
         if 2.0 * radius + 4.0 * MARGIN > min(width, height):
             raise InputError(
-                "the disc does not fit into the box: raise width and height or lower intruder_radius"
+                Text(
+                    "the disc does not fit into the box: raise width and height to {least:g} R, "
+                    "or lower intruder_radius to {most:g} R",
+                    least=round_up(2.0 * radius + 4.0 * MARGIN),
+                    most=round_down(0.5 * min(width, height) - 2.0 * MARGIN),
+                )
             )
-        area = int(settings["grains"]) * recipe(settings, "mixed").mean_area()
-        if area > FULLEST * (width * height - math.pi * radius**2):
-            raise InputError("so many grains leave no room: lower grains, or raise width or height")
+        room = FULLEST * (width * height - math.pi * radius**2)
+        most = math.floor(room / recipe(settings, "mixed").mean_area())
+        if int(settings["grains"]) > most:
+            raise InputError(
+                Text(
+                    "so many grains leave no room: lower grains to {most}, or raise width or height",
+                    most=most,
+                )
+            )
 
     def steps(self, settings: Values) -> int:
         return max(2, math.floor(2.0 * _way(settings) / step(settings) + 1e-6))
