@@ -1,18 +1,22 @@
-"""Text in the bundled font: measured, shortened and rendered with a cache.
+"""Text in the bundled font, and in others what it has not: measured, shortened and rendered with a cache.
 
 The font's digits all have one width, so a number that counts does not make its line jitter.
 """
 
 from __future__ import annotations
 
+import contextlib
 import io
 from collections import OrderedDict
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from pathlib import Path
 
 import pygame
 import pygame.font
 
+from sandbox.draw import scripts
+from sandbox.draw.scripts import Piece
 from sandbox.draw.theme import channels
 
 SMALL = 14  # px at scale 1; nothing is smaller
@@ -44,17 +48,47 @@ def _content(bold: bool) -> bytes:
 
 
 @lru_cache(_FONTS)
-def _font(size: int, bold: bool) -> pygame.font.Font:
+def _font(
+    size: int, bold: bool, path: str = "", script: str = "", leftward: bool = False
+) -> pygame.font.Font:
+    """The bundled font, or that of a file."""
     if not pygame.font.get_init():
         pygame.font.init()
     # From memory, as a font keeps the file open that it is read from.
-    return pygame.font.Font(io.BytesIO(_content(bold)), size)
+    font = pygame.font.Font(io.BytesIO(scripts.content(path) if path else _content(bold)), size)
+    with contextlib.suppress(pygame.error):  # a library without HarfBuzz
+        if script:
+            font.set_script(script)
+        if leftward:
+            font.set_direction(pygame.DIRECTION_RTL)
+    return font
+
+
+def _pieces(text: str, size: int, bold: bool) -> Iterator[tuple[Piece, pygame.font.Font]]:
+    """The pieces of a text from the left, with their fonts."""
+    for piece in scripts.pieces(text, _content(bold), bold):
+        yield piece, _font(size, bold, piece.font, piece.script, piece.leftward)
 
 
 @lru_cache(4 * _CACHE_SIZE)
 def _width(text: str, size: int, bold: bool) -> int:
     """Measuring takes longer than one thinks, and a picture asks for the same hundred widths again and again."""
-    return _font(size, bold).size(text)[0]
+    return sum(font.size(piece.text)[0] for piece, font in _pieces(text, size, bold))
+
+
+def _rendered(text: str, size: int, bold: bool, colour: int) -> pygame.Surface:
+    """All pieces on one line, as high as the bundled font's."""
+    pieces = list(_pieces(text, size, bold))
+    shown = [font.render(piece.text, True, channels(colour)) for piece, font in pieces]
+    if not any(piece.font for piece, _ in pieces):
+        return shown[0]
+    own = _font(size, bold)
+    whole = sum(picture.get_width() for picture in shown), own.get_height()
+    line, x = pygame.Surface(whole, pygame.SRCALPHA), 0
+    for (_, font), picture in zip(pieces, shown, strict=True):
+        line.blit(picture, (x, own.get_ascent() - font.get_ascent()))
+        x += picture.get_width()
+    return line
 
 
 def page_scale(
@@ -86,6 +120,31 @@ class Type:
     def width(self, text: str, size: float, bold: bool = False) -> int:
         """Width of a text [px]."""
         return _width(text, self.pixels(size), bold)
+
+    def caret(self, text: str, place: int, size: float) -> int:
+        """Where what is typed before the character at ``place`` goes, from the text's left edge [px]."""
+        x = edge = 0
+        for piece, font in _pieces(text, self.pixels(size), False):
+            width, inside = font.size(piece.text)[0], place - piece.start
+            if 0 <= inside <= len(piece.text) and (inside or not place):
+                before = font.size(piece.text[:inside])[0]
+                edge = x + (width - before if piece.leftward else before)
+            x += width
+        return edge
+
+    def spans(self, text: str, start: int, end: int, size: float) -> list[tuple[int, int]]:
+        """From where to where the characters from ``start`` to ``end`` stand, from the text's left edge [px]."""
+        x, found = 0, []
+        for piece, font in _pieces(text, self.pixels(size), False):
+            width = font.size(piece.text)[0]
+            cuts = [min(max(cut - piece.start, 0), len(piece.text)) for cut in (start, end)]
+            left, right = (font.size(piece.text[:cut])[0] for cut in cuts)
+            if piece.leftward:
+                left, right = width - right, width - left
+            if right > left:
+                found.append((x + left, x + right))
+            x += width
+        return found
 
     def fitting(self, text: str, size: float, width: float, bold: bool = False) -> float:
         """The largest size up to this one at which the text is no wider than that; the smallest legible one if there is none."""
@@ -125,7 +184,7 @@ class Type:
         key = (text, self.pixels(size), bold, colour)
         found = self._cache.get(key)
         if found is None:
-            found = _font(key[1], bold).render(text, True, channels(colour))
+            found = _rendered(text, key[1], bold, colour)
             self._cache[key] = found
             if len(self._cache) > _CACHE_SIZE:
                 self._cache.popitem(last=False)

@@ -40,6 +40,7 @@ def open_display(size: tuple[int, int]) -> pygame.Surface:
         raise InputError(NO_DISPLAY)
     # Pixels are pixels: no blurred enlargement on high-resolution screens.
     os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
+    os.environ.setdefault("SDL_IME_SHOW_UI", "1")  # what an input method offers to choose from
     try:
         pygame.display.init()
         if pygame.display.get_driver() == "x11":

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from sandbox.draw import text
+from sandbox.draw import scripts, text
 from sandbox.draw.text import BODY, SMALL, Type, font_path, page_scale
 from sandbox.words import language
 
@@ -109,3 +110,77 @@ def test_no_font_keeps_a_file_open() -> None:
     plain = pygame.font.Font(str(font_path()), 24).render("ν = −0.8", True, (255, 255, 255))
     mine = Type(1.5).render("ν = −0.8", BODY, 0xFFFFFF)
     assert pygame.image.tobytes(plain, "RGBA") == pygame.image.tobytes(mine, "RGBA")
+
+
+# -- other scripts --
+
+
+@pytest.fixture
+def other_font(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """One that is said to have all signs that the bundled one lacks."""
+    path = str(font_path(bold=True))
+    monkeypatch.setattr(scripts, "_found", lambda sign, bold: path)
+    scripts.pieces.cache_clear()
+    text._width.cache_clear()
+    yield path
+    scripts.pieces.cache_clear()
+    text._width.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("whole", "seen"),
+    [
+        ("Größe ν Їжак", ["Größe ν Їжак"]),
+        ("saved שלום עולם.scene", ["saved ", "<שלום עולם", ".scene"]),
+        # numbers go to the right, in a line that goes to the left
+        ("שלום 12 עולם", ["<עולם", "12", "<שלום"]),
+        ("a שלום!", ["a ", "<שלום", "!"]),
+        ("山田の箱 (2)", ["山田の箱 ", "(2)"]),
+        ("e\u0301 ש\u05c1", ["e\u0301 ", "<ש\u05c1"]),  # marks stay with their letters
+    ],
+)
+def test_pieces_stand_as_they_are_read(other_font: str, whole: str, seen: list[str]) -> None:
+    content = font_path().read_bytes()
+    found = scripts.pieces(whole, content)
+    told = [f"<{piece.text.strip()}" if piece.leftward else piece.text for piece in found]
+    assert [part for part in told if part != "<"] == seen  # "<": a space
+    assert "".join(p.text for p in sorted(found, key=lambda piece: piece.start)) == whole
+    foreign = {piece.font for piece in found if not piece.text.isascii()} - {""}
+    assert foreign <= {other_font}
+
+
+def test_a_line_of_several_fonts_is_as_high_as_any(other_font: str) -> None:
+    type_ = Type(1.0)
+    for whole in ("abc", "a שלום b", "山田"):
+        shown = type_.render(whole, BODY, 0xFFFFFF)
+        assert shown.get_size() == (type_.width(whole, BODY), type_.height(BODY))
+
+
+def test_where_no_font_has_a_sign_the_bundled_one_stands_in(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("pygame.font.get_fonts", list)
+    scripts._found.cache_clear()
+    scripts.pieces.cache_clear()
+    try:
+        assert {piece.font for piece in scripts.pieces("a 山 ש", font_path().read_bytes())} == {""}
+        assert Type(1.0).width("山", BODY) > 0
+    finally:
+        scripts._found.cache_clear()
+        scripts.pieces.cache_clear()
+
+
+def test_the_caret_goes_with_the_letters(other_font: str) -> None:
+    """To the right, and to the left within what is written so; what is selected is where it is seen."""
+    type_, whole = Type(1.0), "ab שלום"
+    places = [type_.caret(whole, place, BODY) for place in range(len(whole) + 1)]
+    assert places[:4] == sorted(places[:4])
+    assert places[0] == 0
+    right, left = type_.width(whole, BODY), places[-1]
+    assert left == pytest.approx(type_.width("ab ", BODY), abs=1)
+    assert places[4:] == sorted(places[4:], reverse=True)
+    assert places[4] < right
+    (first, last), (start, end) = type_.spans(whole, 1, 5, BODY)
+    assert (first, last) == (places[1], pytest.approx(places[3], abs=1))
+    assert (start, end) == (pytest.approx(places[5], abs=1), pytest.approx(right, abs=1))
+    assert type_.spans(whole, 2, 2, BODY) == []

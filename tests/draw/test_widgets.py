@@ -36,7 +36,7 @@ from sandbox.draw.widgets.controls import (
     parts_of,
     slid_to,
 )
-from sandbox.draw.widgets.look import Attention, ring_colour
+from sandbox.draw.widgets.look import Attention, Typing, ring_colour
 from sandbox.draw.widgets.panel_frame import foot_height, panel_picture
 from sandbox.draw.widgets.scale import Range, shown, typed
 from sandbox.words import language
@@ -227,7 +227,7 @@ def texts(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, pygame.Rect]]:
 
     def text(self: Painter, content: str, x: float, y: float, **more: Any) -> pygame.Rect:
         place = original(self, content, x, y, **more)
-        written.append((content, place))
+        written.append((content, place.clip(more.get("clip") or place)))
         return place
 
     monkeypatch.setattr(Painter, "text", text)
@@ -248,7 +248,7 @@ def picture(
 def test_texts_stay_in_the_panel_and_apart(
     texts: list[tuple[str, pygame.Rect]], scale: float
 ) -> None:
-    typing = Attention("grains/nu", "general/packing", "grains/nu", "-0.123456789012", 9)
+    typing = Attention("grains/nu", "general/packing", Typing("grains/nu", "-0.123456789012", 9, 9))
     surface = picture(scale, "dark", typing, height=900)
     assert texts
     for content, place in texts:
@@ -275,10 +275,12 @@ def test_focus_and_hover_change_the_picture() -> None:
             Attention(),
             Attention(focus="grains/c"),
             Attention(hover="grains/c"),
-            Attention("grains/c", "", "grains/c", "12", 2),
+            Attention("grains/c", "", Typing("grains/c", "12", 2, 2)),
+            Attention("grains/c", "", Typing("grains/c", "12", 2, 0)),
+            Attention("grains/c", "", Typing("grains/c", "12", 2, 2, "ka")),
         )
     }
-    assert len(seen) == 4
+    assert len(seen) == 6
 
 
 def test_low_panel_has_no_foot() -> None:

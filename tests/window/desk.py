@@ -58,6 +58,8 @@ class Desk:
     def key(self, key: int, unicode: str = "", mod: int = 0) -> None:
         sign = unicode or (chr(key) if 32 <= key < 127 else "")
         self.post(pygame.KEYDOWN, key=key, unicode=sign, mod=mod)
+        if sign and sign.isprintable() and not mod & (pygame.KMOD_CTRL | pygame.KMOD_META):
+            self.post(pygame.TEXTINPUT, text=sign)
         self.post(pygame.KEYUP, key=key, mod=mod)
 
     def type(self, text: str) -> None:

@@ -513,20 +513,74 @@ def test_every_switch_of_every_scene_is_taken(scene: str, parameter: str, defaul
 # -- typing --
 
 
-def test_editing_a_line() -> None:
-    edit = Edit.of("x", "abc")
-    for key, sign in (
-        (pygame.K_END, ""),
-        (pygame.K_d, "d"),
-        (pygame.K_HOME, ""),
-        (pygame.K_z, "z"),
-    ):
-        assert edit.key(pygame.event.Event(pygame.KEYDOWN, key=key, unicode=sign, mod=0))
-    assert edit.text == "zabcd"
-    for key in (pygame.K_DELETE, pygame.K_RIGHT, pygame.K_BACKSPACE):
-        edit.key(pygame.event.Event(pygame.KEYDOWN, key=key, unicode="", mod=0))
-    assert edit.text == "zcd"
-    assert not edit.key(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_F5, unicode="", mod=0))
-    fresh = Edit.of("x", "abc")
-    fresh.key(pygame.event.Event(pygame.KEYDOWN, key=pygame.K_q, unicode="q", mod=0))
-    assert fresh.text == "q"
+def edited(text: str, *keys: int | tuple[int, int] | str) -> Edit:
+    """After keys, keys with modifiers, and texts."""
+    edit = Edit.of("x", text)
+    for key in keys:
+        if isinstance(key, str):
+            edit.write(key)
+        else:
+            code, mod = key if isinstance(key, tuple) else (key, 0)
+            edit.key(pygame.event.Event(pygame.KEYDOWN, key=code, unicode="", mod=mod))
+    return edit
+
+
+SHIFT, CTRL, CMD = pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL, pygame.KMOD_LMETA
+HOME, END, LEFT, RIGHT = pygame.K_HOME, pygame.K_END, pygame.K_LEFT, pygame.K_RIGHT
+BACK, DELETE = pygame.K_BACKSPACE, pygame.K_DELETE
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        ((), "one two"),
+        (("q",), "q"),  # all is selected at first
+        ((END, "d", HOME, "z"), "zone twod"),
+        ((HOME, DELETE, RIGHT, BACK), "e two"),
+        ((BACK,), ""),
+        ((LEFT, "z"), "zone two"),  # to the side of what was selected
+        ((RIGHT, "z"), "one twoz"),
+        ((END, (LEFT, SHIFT), (LEFT, SHIFT), "x"), "one tx"),
+        ((HOME, (END, SHIFT), DELETE), ""),
+        ((END, (LEFT, CTRL), "z"), "one ztwo"),
+        ((HOME, (RIGHT, CTRL), "z"), "onez two"),
+        ((END, (BACK, CTRL)), "one "),
+        ((END, (LEFT, CTRL | SHIFT), (pygame.K_x, CTRL), HOME, (pygame.K_v, CTRL)), "twoone "),
+        ((END, (pygame.K_a, CMD), (pygame.K_c, CMD), END, (pygame.K_v, CMD)), "one twoone two"),
+        (("two\nlines\t",), "twolines"),
+        (("x" * 100,), "x" * 80),
+        ((pygame.K_F5, (pygame.K_q, CTRL)), "one two"),
+    ],
+)
+def test_editing_a_line(keys: tuple[int | tuple[int, int] | str, ...], text: str) -> None:
+    pygame.display.init()
+    edit = edited("one two", *keys)
+    assert edit.text == text
+    assert edit.changed == (text != "one two")
+
+
+def test_clipboard_by_place_where_letters_are_others() -> None:
+    """On a Russian keyboard Ctrl and the key of V."""
+    pygame.display.init()
+    edit = edited("one", (pygame.K_c, CTRL), END)
+    paste = {"key": ord("м"), "scancode": pygame.KSCAN_V, "unicode": "м", "mod": CTRL}
+    edit.key(pygame.event.Event(pygame.KEYDOWN, paste))
+    assert edit.text == "oneone"
+
+
+def test_an_input_method_has_the_keys_while_it_composes(desk: Desk) -> None:
+    desk.app.panel.folded.clear()
+    desk.app.tick()
+    go_to(desk, "files/name")
+    desk.key(pygame.K_RETURN)
+    desk.post(pygame.TEXTEDITING, text="ni", start=2, length=0)
+    assert desk.app.panel.edit is not None
+    assert desk.app.panel.edit.composed == "ni"
+    desk.key(pygame.K_RETURN)  # takes what is offered
+    desk.key(pygame.K_BACKSPACE)
+    desk.post(pygame.TEXTINPUT, text="日")
+    assert desk.app.panel.edit.text == "日"
+    desk.key(pygame.K_RETURN)
+    found = control(desk, "files/name")
+    assert isinstance(found, TextField)
+    assert found.text == "日"

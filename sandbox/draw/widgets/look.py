@@ -34,14 +34,23 @@ CORNER = 7.0  # radius of corners at scale 1 [px]
 
 
 @dataclass(frozen=True, slots=True)
+class Typing:
+    """What is being typed."""
+
+    name: str  # of the control
+    text: str
+    caret: int  # before which character the next one goes
+    anchor: int  # from here to the caret it is selected
+    composed: str = ""  # at the caret, by an input method that has not decided yet
+
+
+@dataclass(frozen=True, slots=True)
 class Attention:
     """What the person is at: by the keyboard, by the mouse, typing."""
 
     focus: str = ""  # control with the ring; nothing: none is shown
     hover: str = ""
-    typing: str = ""  # control that is being typed into
-    text: str = ""  # what has been typed
-    caret: int = 0  # before which character the next one goes
+    typing: Typing | None = None
 
 
 def ring_colour(theme: Theme) -> int:
@@ -182,31 +191,35 @@ def _draw_box(
 ) -> None:
     """Something that can be typed: a number or a line of text."""
     theme, scale, type_ = painter.theme, painter.scale, painter.type
-    typing = attention.typing == name
     inner = rect.inflate(0, -round(6 * scale))
-    if typing:
-        painter.box(
-            inner, theme.ground, radius=CORNER * scale, edge=theme.text, edge_width=2 * scale
-        )
-    else:
-        _field(painter, inner, hover)
-    room = inner.width - round(16 * scale)
-    if not typing:
-        shown_text = type_.shortened(text, BODY, room)
-        painter.text(shown_text, *inner.center, anchor="centre")
+    if attention.typing is not None and attention.typing.name == name:
+        edge = theme.text
+        painter.box(inner, theme.ground, radius=CORNER * scale, edge=edge, edge_width=2 * scale)
+        _draw_typing(painter, inner.inflate(-round(16 * scale), 0), attention.typing)
         return
-    # The end that is being typed at stays in view.
-    before, after = attention.text[: attention.caret], attention.text[attention.caret :]
-    while before and type_.width(before + after, BODY) > room and type_.width(before, BODY) > room:
-        before = before[1:]
-    while after and type_.width(before + after, BODY) > room:
-        after = after[:-1]
-    left = inner.left + round(8 * scale)
-    painter.text(before + after, left, inner.centery)
-    caret = left + type_.width(before, BODY)
-    half = 0.4 * type_.height(BODY)
-    ends = (caret, inner.centery - half), (caret, inner.centery + half)
-    painter.line(*ends, 2.0 * scale, ring_colour(theme))
+    _field(painter, inner, hover)
+    shown_text = type_.shortened(text, BODY, inner.width - round(16 * scale))
+    painter.text(shown_text, *inner.center, anchor="centre")
+
+
+def _draw_typing(painter: Painter, room: pygame.Rect, typing: Typing) -> None:
+    """The text, shifted so that the caret stays in view; what is selected has a ground, what is composed a line."""
+    scale, type_ = painter.scale, painter.type
+    at, composed = typing.caret, typing.composed
+    text = typing.text[:at] + composed + typing.text[at:]
+    caret = type_.caret(text, at + len(composed), BODY)
+    shift = room.left - max(caret - room.width, 0)
+    view = room.inflate(round(4 * scale), 0)
+    half = round(0.4 * type_.height(BODY))
+    marks = [(typing.anchor, at, -half, 2 * half)] if not composed else []
+    marks += [(at, at + len(composed), half, max(round(scale), 1))]
+    for start, end, top, height in marks:
+        for left, right in type_.spans(text, min(start, end), max(start, end), BODY):
+            place = pygame.Rect(shift + left, room.centery + top, right - left, height)
+            painter.fill(place.clip(view), mix(painter.theme.ground, painter.theme.text, 0.35))
+    painter.text(text, shift, room.centery, clip=view)
+    ends = (shift + caret, room.centery - half), (shift + caret, room.centery + half)
+    painter.line(*ends, 2.0 * scale, ring_colour(painter.theme))
 
 
 def _draw_switch(painter: Painter, switch: Switch, rect: pygame.Rect, hover: bool) -> None:

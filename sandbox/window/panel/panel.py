@@ -24,7 +24,7 @@ from sandbox.draw.widgets.controls import (
     parts_of,
     slid_to,
 )
-from sandbox.draw.widgets.look import Attention
+from sandbox.draw.widgets.look import Attention, Typing
 from sandbox.draw.widgets.panel_frame import draw_tab, foot_height, panel_picture
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
@@ -151,6 +151,10 @@ class Panel(Silent):
         """Mouse and keyboard."""
         if event.type == pygame.KEYDOWN:
             return self._key(event)
+        if event.type in (pygame.TEXTINPUT, pygame.TEXTEDITING) and self.edit is not None:
+            put = self.edit.write if event.type == pygame.TEXTINPUT else self.edit.compose
+            put(event.text)
+            return True
         if event.type == pygame.MOUSEMOTION:
             self._pointer = event.pos
         if self.stage.mouse.holding:  # the hand goes on over the panel
@@ -289,7 +293,7 @@ class Panel(Silent):
 
     def _key(self, event: pygame.event.Event) -> bool:
         if self.edit is not None:
-            return self._key_of_edit(event)
+            return self._key_of_edit(self.edit, event)
         place = self._places.named(self.stage.focus.name) if self.drawer.shown else None
         if place is None:
             return False
@@ -310,9 +314,7 @@ class Panel(Silent):
             if control.open != asked.value:
                 self._toggle(control)
         elif asked.edits:
-            edit = self._begin_edit(control)
-            if asked.sign:
-                edit.key(event)
+            self._begin_edit(control)  # a first sign comes as text, after its key
         elif isinstance(control, Slider) and not asked.done:
             self.draft = Draft(control.name, float(asked.value), by_mouse=False)
             self._use(control.name, asked.value, False)
@@ -320,9 +322,10 @@ class Panel(Silent):
             self._use(control.name, asked.value, True)
         return True
 
-    def _key_of_edit(self, event: pygame.event.Event) -> bool:
-        assert self.edit is not None
-        if event.key == pygame.K_ESCAPE:
+    def _key_of_edit(self, edit: Edit, event: pygame.event.Event) -> bool:
+        if edit.composed:
+            pass  # the keys are the input method's
+        elif event.key == pygame.K_ESCAPE:
             self.edit = None
         elif event.key in (pygame.K_RETURN, pygame.K_KP_ENTER):
             self._finish_edit()
@@ -330,10 +333,10 @@ class Panel(Silent):
             self._finish_edit()
             return False
         else:
-            self.edit.key(event)
+            edit.key(event)
         return True
 
-    def _begin_edit(self, control: Simple) -> Edit:
+    def _begin_edit(self, control: Simple) -> None:
         match control:
             case Slider(value=value):
                 text = f"{value:.6g}"
@@ -343,13 +346,12 @@ class Panel(Silent):
                 pass
             case _:
                 text = ""
-        edit = self.edit = Edit.of(control.name, text)
-        return edit
+        self.edit = Edit.of(control.name, text)
 
     def _finish_edit(self) -> None:
         """Hand over what was typed, if anything was."""
         edit, self.edit = self.edit, None
-        if edit is not None and not edit.fresh:
+        if edit is not None and edit.changed:
             self._use(edit.name, edit.text, True)
 
     def _finish_draft(self) -> None:
@@ -376,14 +378,14 @@ class Panel(Silent):
             draw_tab(painter, self.drawer.tab)
             return
         focus = self.stage.focus
-        edit = self.edit
-        attention = Attention(
-            focus.ring,
-            self._hover,
-            "" if edit is None else edit.name,
-            "" if edit is None else edit.text,
-            0 if edit is None else edit.caret,
-        )
+        attention = Attention(focus.ring, self._hover)
+        if (edit := self.edit) is not None:
+            typed = Typing(edit.name, edit.text, edit.caret, edit.anchor, edit.composed)
+            attention = replace(attention, typing=typed)
+            if (
+                place := self.place_of(edit.name)
+            ) is not None:  # where an input method shows its own
+                pygame.key.set_text_input_rect(place)
         look = self._places, self.scroll, attention, painter.theme, painter.type
         if self._picture is None or self._picture[0] != (rect.size, *look):
             self._picture = (rect.size, *look), panel_picture(rect.size, *look)
