@@ -9,10 +9,10 @@ import numpy as np
 import pygame
 
 from sandbox.draw.lamp import lamp
+from sandbox.draw.marks import Mark
 from sandbox.draw.painter import Painter
 from sandbox.draw.status import draw_lamp, lamp_space
 from sandbox.draw.text import BODY, SMALL, Type
-from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.session.frame import Frame
 from sandbox.words import words
 
@@ -43,8 +43,8 @@ def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pyg
     )
 
 
-def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
-    """Which packing this is, in the colour and dash of its curve; whether to believe it; grains out."""
+def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame, mark: Mark) -> None:
+    """Which run this is, in the colour and dash of its curve; whether to believe it; grains out."""
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     painter.fill(strip, theme.panel)
     thin = max(round(scale), 1)
@@ -53,13 +53,11 @@ def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame) -> None:
     pad, gap = round(12 * scale), round(14 * scale)
     left, right = strip.left + pad, strip.right - pad
 
-    dash = [length * scale for length in packing_dash(frame.packing)]
+    dash = [length * scale for length in mark.dash]
     ends = np.array([left, left + SWATCH * scale])
-    colour = packing_colour(frame.packing)
-    painter.polyline(ends, np.array([middle, middle]), 3.0 * scale, colour, strip, dash)
+    painter.polyline(ends, np.array([middle, middle]), 3.0 * scale, mark.colour, strip, dash)
     x = left + SWATCH * scale + round(8 * scale)
-    name = words.PACKINGS.get(frame.packing, frame.packing)
-    name = type_.shortened(name, BODY, right - x, bold=True)
+    name = type_.shortened(mark.name, BODY, right - x, bold=True)
     x = painter.text(name, x, middle, bold=True, clip=strip).right + gap
 
     state = lamp(frame, theme)

@@ -15,6 +15,7 @@ from sandbox.draw.camera import Camera
 from sandbox.draw.flashes import Flash, draw_flash
 from sandbox.draw.layout import Layout, layout
 from sandbox.draw.legend import draw_header
+from sandbox.draw.marks import Mark, marks
 from sandbox.draw.numbers import RoundScale, typical_largest
 from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
@@ -32,7 +33,7 @@ from sandbox.draw.plot import Curve, draw_plot, finite_part
 from sandbox.draw.squeezed import draw_squeezed
 from sandbox.draw.status import draw_status
 from sandbox.draw.text import Type
-from sandbox.draw.theme import channels, packing_colour, packing_dash, theme_named
+from sandbox.draw.theme import channels, theme_named
 from sandbox.draw.views import VIEWS, view_named
 from sandbox.draw.world import Look, draw_bodies, draw_grains
 from sandbox.session.frame import Frame
@@ -146,7 +147,8 @@ class Renderer:
             self.arrange(**{**self._wanted, "panes": len(panes)})
         shown = [frame for frame in panes if frame is not None]
         painter = self.painter()
-        bodies, feet = self._canvases(painter, panes)
+        told_apart = marks(shown)
+        bodies, feet = self._canvases(painter, panes, told_apart)
         self.bodies = bodies
         bounds = [(frame or shown[0]).bounds for frame in panes]
         views = list(zip(bounds, bodies, strict=True))
@@ -177,7 +179,8 @@ class Renderer:
         draw_header(painter, self.layout.header, shown, looks[0], chain_top)
         labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
         limit = shown[0].hand_limit
-        draw_plot(painter, self.layout.plot, [*map(curve_of, shown), *kept], *labels, limit)
+        curves = [*map(curve_of, shown, told_apart), *kept]
+        draw_plot(painter, self.layout.plot, curves, *labels, limit)
         painter.fill(self.layout.timeline, self.theme.panel)
         painter.fill(self.layout.panel, self.theme.panel)
         draw_status(painter, self.layout.status, shown, rate=rate, paused=paused)
@@ -185,7 +188,7 @@ class Renderer:
         return self.surface
 
     def _canvases(
-        self, painter: Painter, panes: Sequence[Frame | None]
+        self, painter: Painter, panes: Sequence[Frame | None], told_apart: Sequence[Mark]
     ) -> tuple[list[pygame.Rect], list[pygame.Rect]]:
         """Clear the canvases, title them if there are several; returns what is left for the grains, and for words below."""
         canvases = self.layout.canvases
@@ -193,12 +196,12 @@ class Renderer:
             painter.fill(canvases[0], self.theme.ground)
             return [canvases[0]], [pygame.Rect(canvases[0].bottomleft, (0, 0))]
         painter.fill(canvases[0].unionall(canvases[1:]), self.theme.hairline)  # shows in the seams
-        bodies, feet = [], []
+        bodies, feet, waiting = [], [], iter(told_apart)
         for canvas, frame in zip(canvases, panes, strict=True):
             strip, body, foot = cut(canvas, self.type)
             painter.fill(canvas, self.theme.ground)
             if frame is not None:
-                draw_strip(painter, strip, frame)
+                draw_strip(painter, strip, frame, next(waiting))
             bodies.append(body)
             feet.append(foot)
         return bodies, feet
@@ -242,22 +245,19 @@ class Renderer:
         return np.ascontiguousarray(pixels.transpose(1, 0, 2))
 
 
-def curve_of(frame: Frame) -> Curve:
+def curve_of(frame: Frame, mark: Mark) -> Curve:
     """A frame's own curve."""
-    packing = frame.packing
-    name = words.PACKINGS.get(packing, packing)
-    colour, dash = packing_colour(packing), packing_dash(packing)
     ahead = None
     if frame.ahead is not None:  # from the point that is shown now
         stroke = np.append(frame.curve_stroke[-1:], frame.ahead.stroke)
         force = np.append(frame.curve_force[-1:], frame.ahead.force)
-        ahead = finite_part(Curve(stroke, force, colour))
+        ahead = finite_part(Curve(stroke, force, mark.colour))
     return Curve(
         frame.curve_stroke,
         frame.curve_force,
-        colour,
-        dash,
-        name,
+        mark.colour,
+        mark.dash,
+        mark.name,
         events=frame.events,
         ahead=ahead,
     )

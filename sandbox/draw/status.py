@@ -9,6 +9,7 @@ import numpy as np
 import pygame
 
 from sandbox.draw.lamp import lamp, worst
+from sandbox.draw.marks import marks
 from sandbox.draw.numbers import percent
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY
@@ -60,7 +61,7 @@ def draw_status(
     state = lamp(frame, theme)
     said = state.words
     if len(frames) > 1 and state.colour != theme.good:
-        said = f"{words.PACKINGS.get(frame.packing, frame.packing)}: {said}"
+        said = f"{marks(frames)[frames.index(frame)].name}: {said}"
 
     items = _items(frames, paused)
     room = rect.width - 2 * pad

@@ -10,6 +10,7 @@ import pygame
 
 from core.errors import InputError
 from core.files import atomic_write
+from sandbox.draw.marks import marks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot import draw_plot
 from sandbox.draw.render import curve_of
@@ -53,7 +54,7 @@ def plot_picture(frames: Sequence[Frame], kept: Sequence[Kept]) -> pygame.Surfac
     head = round(50 * SCALE)
     title = words.title(frames[0].scene, frames[0].title)
     painter.text(title, 16 * SCALE, 0.55 * head, size=HEADING, bold=True)
-    curves = [*map(curve_of, frames), *map(kept_curve, kept)]
+    curves = [*map(curve_of, frames, marks(frames)), *map(kept_curve, kept)]
     labels = words.say(frames[0].curve_label), words.say(frames[0].stroke_label)
     margin = round(10 * SCALE)
     rect = pygame.Rect(margin, head, SIZE[0] - 2 * margin, SIZE[1] - head - margin)

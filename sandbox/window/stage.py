@@ -19,7 +19,7 @@ from sandbox.window.hand import Mouse
 from sandbox.window.notices import Notices
 from sandbox.window.parts import Part
 from sandbox.window.picture import Picture
-from sandbox.window.solvers.panes import Panes
+from sandbox.window.solvers.panes import Panes, Wanted
 from sandbox.window.sound import Sound
 from sandbox.words import words
 from scenes.text import message
@@ -68,6 +68,11 @@ class Stage:
         Raises InputError for what does not exist.
         """
         self.panes.start(scene, settings, packings, seed)
+        self._begin()
+
+    def start_beside(self, runs: Sequence[Wanted]) -> None:
+        """Run these of one scene side by side. Raises InputError for what does not exist."""
+        self.panes.start_beside(runs)
         self._begin()
 
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:

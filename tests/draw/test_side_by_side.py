@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 from sandbox.draw.flashes import FADE, Flashes
 from sandbox.draw.lamp import worst
+from sandbox.draw.marks import marks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import spread
 from sandbox.draw.render import Renderer
@@ -187,9 +188,8 @@ def test_names_never_lie_on_one_another(wanted: list[float], least: float) -> No
 def test_every_packing_has_a_colour_and_a_dash_of_its_own(
     texts: list[tuple[str, pygame.Rect]],
 ) -> None:
-    from sandbox.draw.render import curve_of
 
-    looks = [(each.colour, each.dash) for each in map(curve_of, side_by_side())]
+    looks = [(each.colour, each.dash) for each in marks(side_by_side())]
     for (colour, dash), (other, others) in combinations(looks, 2):
         assert colour != other
         assert dash != others
@@ -223,3 +223,22 @@ def test_golden_picture(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert wanted.shape == image.shape
     difference = np.abs(wanted.astype(int) - image.astype(int)).max(axis=-1)
     assert difference.max() <= LEVELS, f"{(difference > LEVELS).sum()} pixels differ from {path}"
+
+
+def test_runs_of_one_packing_are_told_apart_by_what_is_set() -> None:
+    frames = [
+        intruder_frame(packing="mixed", seed=seed, settings={"grains": 200, "friction": friction})
+        for seed, friction in ((2, 0.25), (3, 0.5))
+    ]
+    assert [mark.name for mark in marks(frames)] == [
+        "friction 0.25 · seed 2",
+        "friction 0.5 · seed 3",
+    ]
+    assert len({mark.dash for mark in marks(frames)}) == 2
+    others = [*frames, intruder_frame(packing="regular", seed=2, settings=frames[0].settings)]
+    names = [mark.name for mark in marks(others)]
+    assert names[0] == "mixed · friction 0.25 · seed 2"
+    assert names[2].startswith("regular · ")
+    picture = Renderer((900, 500)).image(frames)
+    same = Renderer((900, 500)).image([frames[0], replace(frames[1], settings={}, seed=2)])
+    assert (picture != same).any()

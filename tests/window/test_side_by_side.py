@@ -18,6 +18,7 @@ from sandbox.record.video import VideoWriter
 from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset, Undo
 from sandbox.window import film as record
 from sandbox.window.solvers.in_step import NOT_ALL, way_back
+from sandbox.window.solvers.panes import Wanted
 from sandbox.words import words
 from tests.draw.frames import intruder_frame
 from tests.window.desk import Desk
@@ -151,6 +152,32 @@ def test_one_that_fails_says_so_and_reset_builds_all_anew(desk: Desk) -> None:
     desk.key(pygame.K_r)
     desk.until(lambda: [seen.phase for seen in desk.app.stage.panes.snapshots] == ["running"] * 3)
     assert len(desk.sessions) == 6
+
+
+def test_any_two_runs_of_a_scene_stand_side_by_side(desk: Desk) -> None:
+    """Also of one packing: the first is the one that is looked at, and a reset of what failed builds both as they were."""
+    panes = desk.app.stage.panes
+    both = [Wanted("intruder", "mixed", seed, {"stroke": 10.0 * seed}) for seed in (4, 5)]
+    desk.start()
+    desk.app.stage.start_beside(both)
+    one, other = desk.sessions[-2:]
+    desk.until(lambda: all(seen.phase == "running" for seen in panes.snapshots))
+    assert panes.comparing
+    assert (panes.seed, panes.packings) == (4, ("mixed", "mixed"))
+    assert panes.snapshot is panes.snapshots[0]
+    assert [(s.seed, s.settings) for s in (one, other)] == [
+        (4, {"stroke": 40.0}),
+        (5, {"stroke": 50.0}),
+    ]
+    desk.app.stage.send(Change("friction", 0.5))
+    other.fail = InputError("no more")
+    desk.key(pygame.K_a)
+    desk.until(lambda: any(seen.phase == "failed" for seen in panes.snapshots))
+    desk.key(pygame.K_r)
+    assert [(s.seed, s.settings) for s in desk.sessions[-2:]] == [
+        (4, {"stroke": 40.0, "friction": 0.5}),
+        (5, {"stroke": 50.0, "friction": 0.5}),
+    ]
 
 
 def test_back_goes_only_what_all_can_go(desk: Desk) -> None:

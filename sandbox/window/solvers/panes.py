@@ -73,6 +73,7 @@ class Panes:
         # Serial of the snapshot when somebody has gone back in time; None: nobody has since the scene was last built.
         self._gone_back: int | None = None
         self._panes: list[Pane] = []
+        self._runs: tuple[Wanted, ...] = ()  # that were begun side by side
         self._conductor = Conductor()
         self._speed = math.inf
         self._leaving: list[SolverThread] = []
@@ -143,9 +144,20 @@ class Panes:
         seed = self.seed if seed is None else seed
         given = dict(settings or {})
         kinds = tuple(packings) or (self.packing,)
-        sessions = [self._make(scene, kind, seed, dict(given)) for kind in kinds]
         first = self.packing if self.packing in kinds else kinds[0]
-        self._begin(Wanted(scene, first, seed, given), kinds, sessions)
+        runs = [Wanted(scene, kind, seed, given) for kind in kinds]
+        self._start_all(Wanted(scene, first, seed, given), runs)
+
+    def start_beside(self, runs: Sequence[Wanted]) -> None:
+        """Leave what runs and build these, of one scene, side by side. Raises InputError for what does not exist."""
+        self.packing = runs[0].packing
+        self._start_all(runs[0], runs)
+        self._runs = tuple(runs)
+
+    def _start_all(self, wanted: Wanted, runs: Sequence[Wanted]) -> None:
+        """Build them; ``wanted`` is what the window knows of."""
+        sessions = [self._make(r.scene, r.packing, r.seed, dict(r.settings)) for r in runs]
+        self._begin(wanted, [run.packing for run in runs], sessions)
 
     def open(self, file: str | os.PathLike[str] | SceneFile) -> None:
         """Leave what runs and go on where a scene file was written. Raises InputError for one that cannot be read."""
@@ -186,9 +198,11 @@ class Panes:
         self._conductor.set_speed(self._speed)
         self._close_log()
         self._log = None if self._path is None else GrowingLog(self._path)
+        self._runs = ()
+        logged = kinds.index(wanted.packing)
         self._panes = [
-            self._pane(kind, session, self._log if kind == wanted.packing else None)
-            for kind, session in zip(kinds, sessions, strict=True)
+            self._pane(kind, session, self._log if place == logged else None)
+            for place, (kind, session) in enumerate(zip(kinds, sessions, strict=True))
         ]
 
     def _close_log(self) -> None:
@@ -300,9 +314,18 @@ class Panes:
             self.send(Reset())
         elif made is not None and made.file is not None:
             self.open(made.file)
+        elif self.comparing and self._runs:
+            self.start_beside([self._as_changed(run) for run in self._runs])
         else:
             packings = self.packings if self.comparing else ()
             self.start(self.scene, self._wanted.settings, packings)
+
+    def _as_changed(self, run: Wanted) -> Wanted:
+        """One of those that were begun side by side, with what has been changed in all of them since."""
+        first, now = self._runs[0], self._wanted
+        changed = {k: v for k, v in now.settings.items() if first.settings.get(k) != v}
+        seed = run.seed if now.seed == first.seed else now.seed
+        return replace(run, seed=seed, settings={**run.settings, **changed})
 
     def pause_or_go_on(self) -> None:
         """Hold, or go on."""
