@@ -20,11 +20,28 @@ import pygame.font
 import pygame.freetype
 
 # Families that have many scripts, of the systems that bring them; for others Noto's family of that script is tried first.
-_FAMILIES = """
-    notosanscjksc notosanscjkjp notosanscjkkr notosans dejavusans freesans
-    segoeui microsoftyahei yugothic msgothic malgungothic nirmalaui tahoma
-    pingfangsc hiraginosansgb applesdgothicneo arialunicodems geezapro arial unifont
-""".split()
+_FAMILIES = [
+    "notosanscjksc",
+    "notosanscjkjp",
+    "notosanscjkkr",
+    "notosans",
+    "dejavusans",
+    "freesans",
+    "segoeui",
+    "microsoftyahei",
+    "yugothic",
+    "msgothic",
+    "malgungothic",
+    "nirmalaui",
+    "tahoma",
+    "pingfangsc",
+    "hiraginosansgb",
+    "applesdgothicneo",
+    "arialunicodems",
+    "geezapro",
+    "arial",
+    "unifont",
+]
 # Scripts whose letters change with those beside them, by the first word of their letters' names; codes of ISO 15924.
 _SHAPED = {
     "ARABIC": "Arab",
