@@ -109,7 +109,7 @@ ROOMS = {
     "studies.hand": f"lessons {STUDY}",
     "studies.common": "ensemble core",
     "ensemble": "core",
-    "lessons": "words session scenes core",
+    "lessons": "files words session scenes core",
     "files": "session scenes core",
     "draw": "draw.raster session words scenes core",
     "draw.raster": "core",

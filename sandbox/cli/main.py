@@ -136,6 +136,11 @@ def _add_play(command: Command) -> None:
     _add_scene_options(play)
     _add_compare(play)
     play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
+    play.add_argument(
+        "--answers",
+        metavar="FILE.csv",
+        help="what is predicted in lessons, a row each, added to what is there; no names",
+    )
     _add_size(play)
     play.add_argument(
         "--scale",

@@ -46,6 +46,7 @@ def list_scenes(options: argparse.Namespace) -> int:
 def play(options: argparse.Namespace) -> int:
     """Open the window, with a scene or the menu."""
     from sandbox import environment
+    from sandbox.lessons.answers import Answers
     from sandbox.words import language
 
     language.use(options.language or language.of_environment())
@@ -70,6 +71,9 @@ def play(options: argparse.Namespace) -> int:
         if session.file and options.compare:
             raise InputError("--compare: open the scene file without it, then press C")
         options.packing, options.seed = session.packing, session.seed
+    answers = Answers(
+        arguments.output_file("--answers", options.answers, [".csv"]) if options.answers else None
+    )
     environment.require_pygame_ce()
     environment.require_display()
     from sandbox.window import app
@@ -84,6 +88,7 @@ def play(options: argparse.Namespace) -> int:
         packings=options.compare or (),
         script=_row(options.scene) is not None,
         lesson=lesson,
+        answers=answers,
         looks=Looks(options.size, options.scale, options.theme, options.view),
     )
 

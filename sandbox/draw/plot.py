@@ -23,6 +23,8 @@ WIDTH, FAINT_WIDTH = 2.2, 1.3  # of curves at scale 1 [px]
 LIMIT_DASH = (2.0, 5.0)  # of the line at the strength of the hand, at scale 1 [px]
 FAINT = 0.5  # how far earlier curves recede into the panel
 
+Axes = tuple[float, float, float, float]  # along low, high; up bottom, top
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curve:
@@ -62,10 +64,11 @@ def finite_part(curve: Curve) -> tuple[Floats, Floats]:
     return stroke[sound], force[sound]
 
 
-def limits(curves: Sequence[tuple[Floats, Floats]]) -> tuple[float, float, float, float]:
-    """Axes that hold all curves and zero: stroke low, high [R]; force low, high [k R]."""
-    strokes = np.concatenate([np.zeros(1), *(stroke for stroke, _ in curves)])
-    forces = np.concatenate([np.zeros(1), *(force for _, force in curves)])
+def limits(curves: Sequence[tuple[Floats, Floats]], least: Axes | None = None) -> Axes:
+    """Axes that hold all curves, zero and ``least``: stroke low, high [R]; force low, high [k R]."""
+    along, up = ((0.0,), (0.0,)) if least is None else ((0.0, *least[:2]), (0.0, *least[2:]))
+    strokes = np.concatenate([along, *(stroke for stroke, _ in curves)])
+    forces = np.concatenate([up, *(force for _, force in curves)])
     low, high = float(strokes.min()), float(strokes.max())
     if high - low <= 0.0:
         high = low + 1.0
@@ -77,7 +80,7 @@ def limits(curves: Sequence[tuple[Floats, Floats]]) -> tuple[float, float, float
 class PlotBox:
     """The inside of the axes and what maps onto it."""
 
-    def __init__(self, rect: pygame.Rect, axes: tuple[float, float, float, float]) -> None:
+    def __init__(self, rect: pygame.Rect, axes: Axes) -> None:
         self.rect = rect
         self.low, self.high, self.bottom, self.top = axes
 
@@ -90,6 +93,14 @@ class PlotBox:
         """Pixels of forces."""
         share = (np.asarray(force, dtype=np.float64) - self.bottom) / (self.top - self.bottom)
         return self.rect.bottom - share * self.rect.height
+
+    def at(self, x: float, y: float) -> tuple[float, float]:
+        """Stroke and force at a pixel; outside, at the nearest edge."""
+        along = min(max((x - self.rect.left) / self.rect.width, 0.0), 1.0)
+        up = min(max((self.rect.bottom - y) / self.rect.height, 0.0), 1.0)
+        return self.low + along * (self.high - self.low), self.bottom + up * (
+            self.top - self.bottom
+        )
 
 
 def unit_of(label: str) -> str:
@@ -110,19 +121,21 @@ def draw_plot(
     label: str,
     stroke_label: str = "",
     limit: float | None = None,
-) -> None:
+    least: Axes | None = None,
+) -> PlotBox | None:
     """Axes and curves. One alone has its present value in the headline; several are named at their ends.
 
     ``limit``: the strength of the hand, where its force is what is plotted: a line across, once the axis reaches so far.
-    Labels are in the present language already. The present curves come first, earlier ones after them.
+    ``least``: axes that there are at least. Labels are in the present language already. The present curves come first,
+    earlier ones after them. Returns the inside of the axes; None where there is no room for it.
     """
     if rect.height <= 0 or rect.width <= 0:
-        return
+        return None
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     painter.fill(rect, theme.panel)
     painter.fill(pygame.Rect(rect.left, rect.top, rect.width, max(round(scale), 1)), theme.hairline)
     parts = [finite_part(curve) for curve in curves]
-    axes = limits([*parts, *(curve.ahead for curve in curves if curve.ahead is not None)])
+    axes = limits([*parts, *(curve.ahead for curve in curves if curve.ahead is not None)], least)
     text = type_.height(SMALL)
     pad = round(8 * scale)
     force_ticks = ticks(axes[2], axes[3], max(int((rect.height - 3 * text) / (1.6 * text)), 1))
@@ -148,13 +161,13 @@ def draw_plot(
         axes,
     )
     if box.rect.width < 10 or box.rect.height < 10:
-        return
+        return None
     _draw_axes(painter, box, force_ticks, names, stroke_label or words.STROKE_AXIS)
     if not any(stroke.size for stroke, _ in parts):
         painter.text(
             words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
         )
-        return
+        return box
     if limit is not None and limit <= axes[3]:
         _draw_limit(painter, box, limit)
     _draw_curves(painter, box, curves, parts)
@@ -163,6 +176,7 @@ def draw_plot(
         for curve, part in named
     ]
     draw_names(painter, box.rect, right, labels, ends)
+    return box
 
 
 def _draw_headline(

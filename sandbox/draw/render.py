@@ -29,7 +29,7 @@ from sandbox.draw.pane import (
     said_of,
 )
 from sandbox.draw.periodic import draw_cell
-from sandbox.draw.plot import Curve, draw_plot, finite_part
+from sandbox.draw.plot import Axes, Curve, PlotBox, draw_plot, finite_part
 from sandbox.draw.squeezed import draw_squeezed
 from sandbox.draw.status import draw_status
 from sandbox.draw.text import Type
@@ -71,6 +71,8 @@ class Renderer:
             Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0),
         )
         self.bodies = [self.layout.canvas]  # what of each canvas the grains have
+        self.plot_least: Axes | None = None  # axes that the plot has at least
+        self.plot_box: PlotBox | None = None  # inside the axes, of the latest picture
         self.forget()
 
     @property
@@ -180,7 +182,8 @@ class Renderer:
         labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
         limit = shown[0].hand_limit
         curves = [*map(curve_of, shown, told_apart), *kept]
-        draw_plot(painter, self.layout.plot, curves, *labels, limit)
+        least = self.plot_least
+        self.plot_box = draw_plot(painter, self.layout.plot, curves, *labels, limit, least)
         painter.fill(self.layout.timeline, self.theme.panel)
         painter.fill(self.layout.panel, self.theme.panel)
         draw_status(painter, self.layout.status, shown, rate=rate, paused=paused)

@@ -169,7 +169,7 @@ class Type:
         """Lines no wider than the width, broken between words, but not within a unit."""
         lines: list[str] = []
         line = ""
-        for word in text.replace(" k R", f"{FIRM}k{FIRM}R").split(" "):
+        for word in text.replace(" k R", f"{FIRM}k{FIRM}R").replace(" %", f"{FIRM}%").split(" "):
             longer = f"{line} {word}" if line else word
             if line and self.width(longer, size, bold) > width:
                 lines.append(line)

@@ -14,7 +14,7 @@ from sandbox.words import language
 from scenes.parameter import Value
 
 # What a lesson can keep out of sight besides the parameters of its scenes: sections of the panel, and what there is to do.
-SECTIONS = ("hand", "grains", "geometry", "solver", "curves", "files", "looks", "time")
+SECTIONS = ("hand", "grains", "geometry", "solver", "curves", "files", "looks")
 DEEDS = (
     "packing",
     "seed",

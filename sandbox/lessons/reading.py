@@ -200,6 +200,10 @@ def _step(table: Taken, first: str, running: str) -> Step:
         hide=_hidden(table, [scene]),
         minutes=table.whole("minutes", 1, MOST_MINUTES, 0),
     )
+    if step.predict is not None and step.predict.kind == "sketch" and until is None:
+        raise InputError(
+            f"{table.at('until')} is missing: it says when what was sketched has been measured"
+        )
     if step.do and until is None:
         raise InputError(
             f"{table.at('until')} is missing: it says when what is to be done has been done"

@@ -11,7 +11,6 @@ import csv
 import io
 import json
 import math
-import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,6 +24,7 @@ from core.files import is_special
 from sandbox import __version__
 from sandbox.ensemble.machine import machine
 from sandbox.files.folder import prepare_folder, write_text
+from sandbox.files.lines import append_lines
 from sandbox.interrupts import deferred
 from sandbox.sweep.columns import AVALANCHE, columns
 from sandbox.sweep.outcome import FAILED, OUTCOMES, Found
@@ -133,8 +133,8 @@ class Tables:
         some = [as_read({**avalanche, **axes}) for avalanche in found.avalanches]
         self.avalanches[row], self.runs[row] = some, as_read(found.run)
         with deferred():
-            _append(self.folder / AVALANCHES, _lines(some, self._avalanche_columns))
-            _append(self.folder / RUNS, _lines([self.runs[row]], self._run_columns))
+            append_lines(self.folder / AVALANCHES, _lines(some, self._avalanche_columns))
+            append_lines(self.folder / RUNS, _lines([self.runs[row]], self._run_columns))
 
     def write_all(self) -> None:
         """Both tables anew, in the order of the request."""
@@ -206,23 +206,6 @@ def _is_number(text: str) -> bool:
 def as_read(row: Mapping[str, object]) -> Row:
     """A row as it will be read again: floats to the same bits."""
     return {name: str(value) for name, value in row.items()}
-
-
-def _append(path: Path, lines: str) -> None:
-    """Whole lines in one piece."""
-    if not lines:
-        return
-    try:
-        with path.open("ab", buffering=0) as file:
-            size = os.fstat(file.fileno()).st_size
-            data = lines.encode()
-            if file.write(data) < len(data):  # a disk that has room for a part takes that
-                file.truncate(size)
-                raise OSError(28, "no room left on the disk")
-    except OSError as error:
-        raise InputError(
-            f"cannot write {path}: {(error.strerror or str(error)).lower()}"
-        ) from error
 
 
 def _lines(rows: Iterable[Row], names: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ from sandbox.files.scene_file import SUFFIX
 from sandbox.session.commands import Change, Protocol
 from sandbox.window.display import save_picture
 from sandbox.window.export import free_stem
-from sandbox.window.keys import Action, packing_for
+from sandbox.window.keys import PACKING_ACTIONS, Action, packing_for
 from sandbox.window.menu import Choice
 from sandbox.window.pages import Pages
 from sandbox.window.picture import progress_of
@@ -20,6 +20,21 @@ from sandbox.window.stage import Stage
 from sandbox.words import language, words
 from scenes.text import message
 
+# What a key would do that a lesson may keep out of sight.
+HIDES = {
+    **dict.fromkeys((*PACKING_ACTIONS, Action.NEXT_PACKING), "packing"),
+    Action.NEW_SEED: "seed",
+    Action.NEXT_VIEW: "view",
+    Action.CHAINS: "chains",
+    Action.COMPARE: "compare",
+    Action.PROTOCOL: "drive",
+    Action.BRUSH: "brush",
+    Action.EXPLORE: "explore",
+    Action.RECORD: "record",
+    Action.RECORD_GIF: "record",
+    Action.EXPORT: "export",
+    Action.SAVE: "files",
+}
 SCALES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
 
 
@@ -31,7 +46,10 @@ class Actions:
 
     def act(self, action: Action) -> None:
         """What a key or a button asks for."""
-        if action is Action.SCREENSHOT:
+        pages = self.stage.show_menu or self.stage.show_help or self.stage.show_explore
+        if HIDES.get(action) in self.pages.guide.hidden and not pages:
+            self.stage.toast(words.HIDDEN_HERE)
+        elif action is Action.SCREENSHOT:
             name = (
                 f"-{self.stage.panes.scene}"
                 if self.stage.panes.scene and not self.stage.show_menu

@@ -16,6 +16,7 @@ from sandbox.draw.pages.splash import draw_splash
 from sandbox.draw.warmup import Warmup
 from sandbox.files import autosave
 from sandbox.interrupts import requests_to_end
+from sandbox.lessons.answers import Answers
 from sandbox.lessons.lesson import Lesson
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Protocol
@@ -58,20 +59,21 @@ def run(
     packings: Sequence[str] = (),
     script: bool = False,
     lesson: Lesson | None = None,
+    answers: Answers | None = None,
     looks: Looks = USUAL,
 ) -> int:
     """Open the window and stay until it is closed. Without a scene, a file of one or a lesson, it starts with the menu.
 
-    ``packings``: side by side, if any are named. ``script``: the scene's own drive is on from the start. ``log``: where the log
-    of the last scene started is written, all the time. SIGTERM and SIGHUP ask for that too: the autosave stays then, and the
-    code is 128 and the signal's number. Raises InputError without a display, for what does not exist and for a log that cannot
-    be written.
+    ``packings``: side by side, if any are named. ``script``: the scene's own drive is on from the start. ``answers``: what is
+    predicted in lessons is added to them. ``log``: where the log of the last scene started is written, all the time. SIGTERM and
+    SIGHUP ask for that too: the autosave stays then, and the code is 128 and the signal's number. Raises InputError without a
+    display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
     # Before there is a window: where nobody else listens, SDL makes of a request to end a click on the close button.
     with requests_to_end() as requests:
         panes = Panes(packing, seed, autosave=autosave.begin(), log=log)
-        app = App(panes, looks)
+        app = App(panes, looks, answers)
         if films := found_films(Path()):
             app.stage.toast(words.FILMS_FOUND.format(names=words.LIST_SIGN.join(films)))
         clean = False
@@ -108,9 +110,9 @@ def run(
 class App:
     """The window, put together from its parts; ``tick`` is one picture."""
 
-    def __init__(self, panes: Panes, looks: Looks) -> None:
+    def __init__(self, panes: Panes, looks: Looks, answers: Answers | None = None) -> None:
         stage = self.stage = Stage(panes, self.handle, looks)
-        self.guide = Guide(stage)
+        self.guide = Guide(stage, answers)
         self.pages = Pages(stage, self.guide)
         self.actions = Actions(stage, self.pages)
         wishes = Wishes(stage)
@@ -135,6 +137,7 @@ class App:
         stage.parts = [
             self.question,
             self.panel,
+            self.guide.asking,
             self.timeline,
             wishes,
             self.brush,

@@ -12,7 +12,9 @@ from core.errors import InputError
 from sandbox.draw.pages.tour_card import (
     BACK,
     CLOSE,
+    FIELD,
     NEXT,
+    OPTION,
     CardLayout,
     TourPage,
     card_layout,
@@ -21,8 +23,10 @@ from sandbox.draw.pages.tour_card import (
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import Type
 from sandbox.lessons import tours
+from sandbox.lessons.answers import Answers, Given
 from sandbox.lessons.lesson import Lesson, Step
 from sandbox.lessons.moments import Moment, met
+from sandbox.window.asking import Asking, said
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
 from sandbox.window.stage import Stage
@@ -42,12 +46,15 @@ PLOT_COST = 1_000  # and a covered plot
 class Guide(Silent):
     """Which lesson is on, which step, and whether it is done."""
 
-    def __init__(self, stage: Stage) -> None:
+    def __init__(self, stage: Stage, answers: Answers | None = None) -> None:
         self.stage = stage
+        self.asking = Asking(stage)
+        self.answers = answers or Answers()
         self.lesson: Lesson | None = None
         self.index = 0
         self.done = False
         self.told = False  # explained before it is done, as somebody wished
+        self._given: Given | None = None  # what was predicted in this step
         self._then: Moment | None = None  # what there was when the step began
         self._hover = ""
         self._corner = 0
@@ -88,6 +95,7 @@ class Guide(Silent):
 
     def close(self) -> None:
         """No more of it."""
+        self.asking.forget()
         self.lesson, self._hover = None, ""
         if self.stage.focus.name in (NEXT, BACK, CLOSE):
             self.stage.focus.leave()
@@ -96,7 +104,9 @@ class Guide(Silent):
     def next(self) -> None:
         """The explanation, if it is not shown yet; else the next step; after the last the end."""
         page = self.page
-        if page.do and not page.why and self.step.why:
+        if self.asking.on:
+            self._keep()
+        elif page.do and not page.why and self._explains:
             self.told = True
         elif not self._last:
             self._go(self.index + 1)
@@ -104,6 +114,30 @@ class Guide(Silent):
             self.close()
             self.stage.toast(words.TOUR_OVER)
         self.stage.redraw(True)
+
+    def _keep(self) -> None:
+        """What was answered is kept, if anything was; now it can be tried."""
+        assert self.lesson is not None
+        self._given = self.asking.given
+        if self._given is not None:
+            self.answers.predicted(self.lesson, self.step, self._given)
+            self._tell_trouble()
+        self.asking.end()
+        self._then, self.done = None, self.step.until is None
+
+    def _tell_trouble(self) -> None:
+        if self.answers.trouble:
+            self.stage.toast(self.answers.trouble)
+
+    @property
+    def hidden(self) -> frozenset[str]:
+        """Controls that the lesson keeps out of sight."""
+        return frozenset() if self.lesson is None else self.lesson.hide | self.step.hide
+
+    @property
+    def _explains(self) -> bool:
+        """Is there anything to explain in this step?"""
+        return bool(self.step.why or (self.step.predict is not None and self.step.predict.answer))
 
     @property
     def _last(self) -> bool:
@@ -116,7 +150,9 @@ class Guide(Silent):
             self._go(self.index - 1)
 
     def _go(self, index: int) -> None:
+        self.asking.forget()
         self.index, self.done, self.told, self._then = index, False, False, None
+        self._given = None
         step = self.step
         # Back over the beginning of another scene: that of the steps before begins anew.
         if step.packings or self.stage.panes.scene != self.scene:
@@ -128,7 +164,9 @@ class Guide(Silent):
                 return
         if step.view:
             self.stage.renderer.set_view(step.view)
-        self.done = step.until is None
+        if step.predict is not None:
+            self.asking.begin(step.predict)
+        self.done = step.until is None and step.predict is None
         self.stage.redraw(True)
 
     def _begin(self) -> None:
@@ -151,6 +189,9 @@ class Guide(Silent):
         if run.scene != self.scene:
             self.close()
             return True
+        if self.asking.on:
+            run.hold()  # a page that was closed may have let it go on
+            return False
         frames = [seen.frame for seen in run.snapshots if seen.phase == "running"]
         there = [frame for frame in frames if frame is not None]
         if self.done or self.step.until is None or len(there) < max(len(run.snapshots), 1):
@@ -159,6 +200,9 @@ class Guide(Silent):
         if self._then is None:
             self._then = moment
         self.done = met(self.step.until, self._then, moment)
+        if self.done and self._given is not None and self.lesson is not None:
+            self.answers.measured(self.lesson, self.step, self._given, there)
+            self._tell_trouble()
         return self.done
 
     # -- what a person does --
@@ -177,6 +221,8 @@ class Guide(Silent):
         """Buttons by mouse; Enter, Backspace and Escape while the keyboard is at no other control."""
         if not self.on:
             return False
+        if self.asking.handle(event):
+            return True
         if event.type == pygame.KEYDOWN:
             return self._key(event.key)
         if event.type not in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN):
@@ -187,31 +233,41 @@ class Guide(Silent):
         inside = self.rect.collidepoint(event.pos)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._hover:
             self._press(self._hover)
-        return inside
+        pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
+        return inside or (pressed and self.asking.refuse(event.pos))
 
     def _key(self, key: int) -> bool:
         focus = self.stage.focus
         enter = key in (pygame.K_RETURN, pygame.K_KP_ENTER)
-        if focus.name in self.stops():
+        if focus.name in self.asking.stops():
+            pass  # Enter goes on from there, Backspace does not go back
+        elif focus.name in self.stops():
             if enter or key == pygame.K_SPACE:
                 self._press(focus.name)
                 return True
             return False
         keys = {pygame.K_BACKSPACE: BACK, pygame.K_ESCAPE: CLOSE}
         name = NEXT if enter else keys.get(key, "")
-        if not name or not focus.on_canvas:
+        at_question = name in (NEXT, CLOSE) and focus.name in self.asking.stops()
+        if not name or not (focus.on_canvas or at_question):
             return False
         self._press(name)
         return True
 
     def _press(self, name: str) -> None:
-        {NEXT: self.next, BACK: self.back, CLOSE: self.close}[name]()
+        if name.startswith(OPTION):
+            self.asking.choose(int(name.removeprefix(OPTION)))
+        elif name == FIELD:
+            self.stage.focus.go(FIELD, False)
+        else:
+            {NEXT: self.next, BACK: self.back, CLOSE: self.close}[name]()
 
     def stops(self) -> list[str]:
         """Buttons that Tab goes to."""
         if not self.on:
             return []
-        return [NEXT, CLOSE] if self.index == 0 else [NEXT, BACK, CLOSE]
+        buttons = [NEXT, CLOSE] if self.index == 0 else [NEXT, BACK, CLOSE]
+        return [*self.asking.stops(), *buttons]
 
     def cursor(self) -> int | None:
         """A hand over a button, an arrow over the card."""
@@ -236,7 +292,22 @@ class Guide(Silent):
         """What the card shows now."""
         assert self.lesson is not None
         scene, step = self.scene, self.step
-        do, why = str(step.do), str(step.why)
+        predict, asking = step.predict, self.asking
+        if asking.on and predict is not None:
+            onward = words.ASK_WITHOUT if asking.given is None else words.ASK_KEEP
+            return TourPage(
+                title=str(self.lesson.title) or words.title(scene) or scene,
+                step=self.index,
+                steps=len(self.lesson.steps),
+                say=str(step.say),
+                onward=onward,
+                ask=str(predict.ask),
+                options=tuple(map(str, predict.options)),
+                chosen=asking.chosen,
+                field=asking.field,
+                hint=asking.hint,
+            )
+        do, why = str(step.do), self._why(step)
         waiting = bool(do and why and not self.done and not self.told)
         if not self.done:
             # What has not happened yet is not said as if it had.
@@ -252,6 +323,21 @@ class Guide(Silent):
             why=why,
             onward=onward,
         )
+
+    def _why(self, step: Step) -> str:
+        """What explains a step, after what was predicted in it."""
+        predict, given = step.predict, self._given
+        parts = []
+        if predict is not None and isinstance(given, float):
+            verdict = predict.is_right(given)
+            parts.append(words.ASK_SAID.format(given=said(predict, given)))
+            if verdict:
+                parts.append(words.ASK_RIGHT)
+            elif verdict is False and predict.right is not None:
+                parts.append(words.ASK_RATHER.format(right=said(predict, predict.right)))
+        if predict is not None:
+            parts.append(str(predict.answer))
+        return " ".join(part for part in (*parts, str(step.why)) if part)
 
     @property
     def docked(self) -> int:

@@ -1,4 +1,4 @@
-"""The card of a guided tour: what it says, what to do, why it came out so, and its buttons."""
+"""The card of a lesson: what it says and asks, what to do, why it came out so, and its buttons."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pygame
 
 from sandbox.draw.painter import Painter
-from sandbox.draw.text import BODY, HEADING, Type
+from sandbox.draw.text import BODY, HEADING, SMALL, Type
 from sandbox.draw.theme import HAND, mix
 from sandbox.draw.widgets.look import ring_colour
 from sandbox.words import words
@@ -15,15 +15,26 @@ from sandbox.words import words
 PAD = 14.0  # within the card at scale 1 [px]
 BUTTON = 38.0  # height of a button at scale 1 [px]
 DOT, DOT_GAP = 4.0, 14.0  # radius of a dot of progress, and from one to the next, at scale 1 [px]
+FIELD_WIDTH = 130.0  # of a number to be typed, at scale 1 [px]
 
-NEXT, BACK, CLOSE = "tour/next", "tour/back", "tour/close"
+NEXT, BACK, CLOSE, FIELD = "tour/next", "tour/back", "tour/close", "tour/number"
+OPTION = "tour/option/"  # and its number, from 0
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A number that is typed, or was."""
+
+    text: str
+    unit: str = ""
+    caret: int | None = None  # before which sign the next one goes; None: nobody types
 
 
 @dataclass(frozen=True, slots=True)
 class TourPage:
     """What the card shows, in the present language."""
 
-    title: str  # of the scene
+    title: str  # of the lesson, or of the scene
     step: int  # from 0
     steps: int
     say: str
@@ -31,6 +42,11 @@ class TourPage:
     done: bool = False
     why: str = ""  # shown once it is done
     onward: str = ""  # what the button that leads on says
+    ask: str = ""  # a question
+    options: tuple[str, ...] = ()  # its answers to choose from
+    chosen: int | None = None  # one of them
+    field: Field | None = None  # or a number
+    hint: str = ""  # how to answer
 
     @property
     def first(self) -> bool:
@@ -39,56 +55,71 @@ class TourPage:
 
 
 @dataclass(frozen=True, slots=True)
+class CardLine:
+    """A line of text on the card: its left end and its middle, from the card's corner [px]."""
+
+    text: str
+    x: int
+    y: int
+    size: float = BODY
+    bold: bool = False
+    task: bool = False  # the first line of what to do: a mark stands before it
+
+
+@dataclass(frozen=True, slots=True)
 class CardLayout:
-    """Where the buttons are, and how high all of it is [px]."""
+    """Where lines and buttons are, and how high all of it is [px]."""
 
     buttons: dict[str, pygame.Rect]  # relative to the card's corner
     height: int
-
-
-Line = tuple[str, float, bool, int, bool]  # text, size, bold, room above [px], is it what to do?
-
-
-def card_lines(page: TourPage, type_: Type, width: int) -> list[Line]:
-    """The texts, wrapped to a card of that width [px]."""
-    scale = type_.scale
-    room = width - 2 * round(PAD * scale)
-    mark = round(22 * scale)
-    gap = round(7 * scale)
-    lines: list[Line] = []
-    for index, line in enumerate(type_.wrapped(page.say, BODY, room)):
-        lines.append((line, BODY, False, gap if index == 0 else 0, False))
-    for index, line in enumerate(type_.wrapped(page.do, BODY, room - mark, bold=True)):
-        lines.append((line, BODY, True, gap if index == 0 else 0, True))
-    for index, line in enumerate(type_.wrapped(page.why, BODY, room)):
-        lines.append((line, BODY, False, gap if index == 0 else 0, False))
-    return lines
+    lines: tuple[CardLine, ...] = ()
 
 
 def card_layout(page: TourPage, type_: Type, width: int) -> CardLayout:
-    """How high the card is at that width [px], and where its buttons are."""
+    """How high the card is at that width [px], and where its lines and buttons are."""
     scale = type_.scale
-    pad, tall = round(PAD * scale), round(BUTTON * scale)
+    pad, tall, gap, mark = (round(size * scale) for size in (PAD, BUTTON, 7.0, 22.0))
     y = pad + type_.height(HEADING, bold=True)
-    y += sum(
-        type_.height(size, bold) + above
-        for _, size, bold, above, _ in card_lines(page, type_, width)
-    )
+    lines: list[CardLine] = []
+    buttons: dict[str, pygame.Rect] = {}
+
+    def write(
+        text: str, *, bold: bool = False, size: float = BODY, task: bool = False, x: int = pad
+    ) -> None:
+        nonlocal y
+        indent, high = x + mark * task, type_.height(size, bold)
+        for index, line in enumerate(type_.wrapped(text, size, width - indent - pad, bold)):
+            y += gap * (index == 0)
+            lines.append(CardLine(line, indent, y + high // 2, size, bold, task and index == 0))
+            y += high
+
+    write(page.say)
+    write(page.ask, bold=True)
+    for index, option in enumerate(page.options):
+        top = y = y + gap
+        write(option, x=pad + mark + gap)
+        y = max(y + gap, top + tall)
+        buttons[f"{OPTION}{index}"] = pygame.Rect(pad, top, width - 2 * pad, y - top)
+    if page.field is not None:
+        wide = min(round(FIELD_WIDTH * scale), width - 2 * pad)
+        buttons[FIELD] = pygame.Rect(pad, y + gap, wide, tall)
+        y = buttons[FIELD].bottom
+        lines.append(CardLine(page.field.unit, pad + wide + gap, y - tall // 2))
+    write(page.hint, size=SMALL)
+    write(page.do, bold=True, task=True)
+    write(page.why)
     y += round(10 * scale)
     onward = type_.width(page.onward, BODY, bold=True) + round(28 * scale)
     back = type_.width(words.TOUR_BACK, BODY, bold=True) + round(24 * scale)
     free = width - 2 * pad - round(8 * scale)
-    onward = min(onward, free // 2)
+    onward = min(onward, free - min(back, free // 3))
     back = min(back, free - onward)
-    buttons = {
-        NEXT: pygame.Rect(width - pad - onward, y, onward, tall),
-        BACK: pygame.Rect(width - pad - onward - round(8 * scale) - back, y, back, tall),
-    }
-    if page.first:
-        del buttons[BACK]
+    buttons[NEXT] = pygame.Rect(width - pad - onward, y, onward, tall)
+    if not page.first:
+        buttons[BACK] = pygame.Rect(buttons[NEXT].left - round(8 * scale) - back, y, back, tall)
     side = round(32 * scale)
     buttons[CLOSE] = pygame.Rect(width - side - round(6 * scale), round(6 * scale), side, side)
-    return CardLayout(buttons, y + tall + pad)
+    return CardLayout(buttons, y + tall + pad, tuple(lines))
 
 
 def draw_tour_card(
@@ -106,34 +137,82 @@ def draw_tour_card(
     room = close.left - rect.left - pad - round(4 * scale)
     title = type_.shortened(page.title, HEADING, room, bold=True)
     painter.text(title, rect.left + pad, rect.top + pad + head // 2, size=HEADING, bold=True)
-    y = rect.top + pad + head
-    mark = round(22 * scale)
-    lowest = rect.top + min(button.top for name, button in places.buttons.items() if name != CLOSE)
-    marked = False
-    for text, size, bold, above, task in card_lines(page, type_, rect.width):
-        y += above
-        height = type_.height(size, bold)
-        if y + height > lowest:
-            break
-        if task and not marked:
-            marked = True
-            _draw_mark(painter, rect.left + pad, y + height // 2, page.done)
-        painter.text(
-            text, rect.left + pad + (mark if task else 0), y + height // 2, size=size, bold=bold
+    lowest = rect.top + places.buttons[NEXT].top
+    for index in range(len(page.options)):
+        name = f"{OPTION}{index}"
+        _draw_option(
+            painter,
+            places.buttons[name].move(rect.topleft),
+            index == page.chosen,
+            focus == name,
+            hover == name,
         )
-        y += height
-    _draw_dots(painter, rect.left + pad, lowest + round(0.5 * BUTTON * scale), page)
+    for line in places.lines:
+        x, y = rect.left + line.x, rect.top + line.y
+        if y + type_.height(line.size, line.bold) // 2 > lowest:
+            break
+        if line.task:
+            _draw_mark(painter, rect.left + pad, y, page.done)
+        painter.text(line.text, x, y, size=line.size, bold=line.bold)
+    if page.field is not None:
+        _draw_field(painter, places.buttons[FIELD].move(rect.topleft), page.field, focus == FIELD)
+    free = places.buttons.get(BACK, places.buttons[NEXT]).left - 2 * pad
+    _draw_progress(painter, rect.left + pad, lowest + round(0.5 * BUTTON * scale), page, free)
     for name, text in ((NEXT, page.onward), (BACK, words.TOUR_BACK)):
         if name in places.buttons:
             draw_button(
                 painter,
                 text,
                 places.buttons[name].move(rect.topleft),
-                strong=name == NEXT and (page.done or not page.do),
+                strong=name == NEXT and (page.done or not page.do) and _answered(page),
                 ring=focus == name,
                 hover=hover == name,
             )
     _draw_close(painter, close, ring=focus == CLOSE, hover=hover == CLOSE)
+
+
+def _answered(page: TourPage) -> bool:
+    """Is there an answer, if there is a question?"""
+    return (
+        not page.ask
+        or page.chosen is not None
+        or (page.field is not None and bool(page.field.text))
+    )
+
+
+def _draw_option(painter: Painter, rect: pygame.Rect, on: bool, ring: bool, hover: bool) -> None:
+    """What can be chosen: a box with a ring at its left, filled if it is chosen."""
+    scale, theme = painter.scale, painter.theme
+    fill = (
+        mix(theme.panel, HAND, 0.22)
+        if on
+        else mix(theme.panel, theme.text, 0.10 if hover else 0.05)
+    )
+    edge = ring_colour(theme) if ring else HAND if on else theme.hairline
+    painter.box(
+        rect, fill, radius=7.0 * scale, edge=edge, edge_width=(3.0 if ring else 1.5) * scale
+    )
+    x = rect.left + 15.0 * scale
+    painter.disc(
+        x, rect.centery, 7.5 * scale, theme.panel, edge=theme.soft_text, edge_width=2.0 * scale
+    )
+    if on:
+        painter.disc(x, rect.centery, 4.0 * scale, ring_colour(theme))
+
+
+def _draw_field(painter: Painter, rect: pygame.Rect, field: Field, ring: bool) -> None:
+    """A number being typed."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    edge = ring_colour(theme) if ring or field.caret is not None else theme.soft_text
+    painter.box(
+        rect, theme.ground, radius=7.0 * scale, edge=edge, edge_width=(3.0 if ring else 1.5) * scale
+    )
+    left = rect.left + round(10 * scale)
+    text = type_.shortened(field.text, BODY, rect.right - left - round(8 * scale))
+    painter.text(text, left, rect.centery)
+    if field.caret is not None:
+        x, half = left + type_.width(text[: field.caret], BODY) + scale, 0.4 * type_.height(BODY)
+        painter.line((x, rect.centery - half), (x, rect.centery + half), 2.0 * scale, edge)
 
 
 def _draw_mark(painter: Painter, x: float, y: float, done: bool) -> None:
@@ -157,9 +236,13 @@ def _draw_mark(painter: Painter, x: float, y: float, done: bool) -> None:
     )
 
 
-def _draw_dots(painter: Painter, x: float, y: float, page: TourPage) -> None:
-    """One a step; the present one is larger."""
+def _draw_progress(painter: Painter, x: float, y: float, page: TourPage, free: int) -> None:
+    """A dot a step, the present one larger; numbers where so many have no room."""
     scale, theme = painter.scale, painter.theme
+    if (page.steps - 1) * DOT_GAP * scale + 2 * DOT * scale > free:
+        text = painter.type.shortened(f"{page.step + 1}/{page.steps}", SMALL, free)
+        painter.text(text, x, y, size=SMALL, colour=theme.soft_text)
+        return
     for step in range(page.steps):
         here = step == page.step
         colour = HAND if here else theme.soft_text if step < page.step else theme.hairline

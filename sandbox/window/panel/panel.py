@@ -16,6 +16,7 @@ from sandbox.draw.widgets.controls import (
     Heading,
     Place,
     Places,
+    Row,
     Simple,
     Slider,
     Stepper,
@@ -36,6 +37,7 @@ from sandbox.window.sections import Section, Value
 from sandbox.window.stage import Stage
 
 DOUBLE = 0.35  # two clicks within this are one double click [s]
+SAME = {"new": "seed"}  # what a lesson hides with something else
 PAN = 8.0  # a press that moves this far scrolls, at scale 1 [px]
 
 
@@ -52,7 +54,7 @@ class Panel(Silent):
     """All sections, scrolled; what is hovered over, dragged and typed."""
 
     def __init__(self, stage: Stage, guide: Guide, folded: set[str]) -> None:
-        self.stage = stage
+        self.stage, self.guide = stage, guide
         self.sections: list[Section] = []
         self.folded = folded  # names of sections
         self.drawer = Drawer(stage, guide)
@@ -121,13 +123,14 @@ class Panel(Silent):
 
     def _controls(self) -> list[Control]:
         controls: list[Control] = []
+        hidden = self.guide.hidden
         for section in self.sections:
-            if not section.there:
+            if not section.there or section.name in hidden:
                 continue
             is_open = not section.title or section.name not in self.folded
             if section.title:
                 controls.append(Heading(section.name, section.title, is_open))
-            controls.extend(section.controls() if is_open else ())
+            controls.extend(without(section.controls() if is_open else (), hidden))
         if self.draft is not None:
             draft = self.draft
             controls = [
@@ -390,3 +393,24 @@ class Panel(Silent):
         if self._picture is None or self._picture[0] != (rect.size, *look):
             self._picture = (rect.size, *look), panel_picture(rect.size, *look)
         painter.picture(self._picture[1], rect.topleft)
+
+
+def without(controls: Sequence[Control], hidden: frozenset[str]) -> list[Control]:
+    """The controls that a lesson does not keep out of sight."""
+    if not hidden:
+        return list(controls)
+    left: list[Control] = []
+    for control in controls:
+        if not isinstance(control, Row):
+            left += [] if _is_hidden(control, hidden) else [control]
+            continue
+        kept = [part for part in control.controls if not _is_hidden(part, hidden)]
+        shares = zip(control.controls, control.shares, strict=False)
+        some = tuple(share for part, share in shares if part in kept)
+        left += [Row(tuple(kept), some)] if kept else []
+    return left
+
+
+def _is_hidden(control: Simple, hidden: frozenset[str]) -> bool:
+    what = control.name.partition("/")[2]
+    return SAME.get(what, what) in hidden

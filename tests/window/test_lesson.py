@@ -1,0 +1,234 @@
+"""A lesson in the window: questions by mouse and by keyboard, sketches over the plot, controls that are kept out of sight."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pygame
+import pytest
+
+from sandbox.draw.pages.tour_card import FIELD, NEXT, OPTION
+from sandbox.lessons.answers import Answers
+from sandbox.lessons.reading import parse_lesson
+from sandbox.window.asking import SKETCH
+from sandbox.window.guide import Guide
+from sandbox.words import words
+from tests.window.desk import Desk
+
+TEXT = """
+format = "auxetic-sandbox lesson"
+version = 1
+scene = "intruder"
+hide = ["packing", "seed", "friction", "files"]
+[[step]]
+key = "pick"
+packings = ["mixed"]
+say = "Look."
+do = "Drag."
+until = { moved = "intruder", by = 2.0 }
+[step.predict]
+kind = "choice"
+ask = "Which?"
+options = ["this", "that"]
+right = 2
+answer = "That, as everybody knows."
+[[step]]
+key = "guess"
+say = "Look."
+[step.predict]
+kind = "number"
+ask = "How much?"
+right = 3
+within = 0.5
+unit = "k R"
+[[step]]
+key = "draw"
+say = "Look."
+do = "Drag."
+until = { increments = 2 }
+hide = ["solver"]
+[step.predict]
+kind = "sketch"
+ask = "How does it go on?"
+along = [0, 30]
+up = [0, 4]
+"""
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Iterator[Desk]:
+    place = Desk((1280, 720))
+    place.app.guide.answers = Answers(tmp_path / "answers.csv")
+    place.app.guide.begin(parse_lesson("mine", TEXT.encode(), ""))
+    ready(place)
+    yield place
+    place.app.close()
+
+
+def ready(desk: Desk) -> None:
+    run = desk.app.stage.panes
+    desk.until(lambda: not desk.app._splash and all(s.phase == "running" for s in run.snapshots))
+    desk.app.tick()
+
+
+def button(desk: Desk, name: str) -> tuple[int, int]:
+    guide = desk.app.guide
+    return guide._layout(guide.rect.width).buttons[name].move(guide.rect.topleft).center
+
+
+def rows(tmp_path: Path) -> list[dict[str, str]]:
+    path = tmp_path / "answers.csv"
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def drag_handle(desk: Desk, way: float) -> None:
+    start, scale = desk.handle_place(), desk.app.stage.renderer.camera.scale
+    desk.press(start)
+    desk.point((start[0] + way * scale, start[1]), pressed=True)
+    desk.until(lambda: desk.app.guide.done)
+    desk.release((start[0] + way * scale, start[1]))
+
+
+def to_step(desk: Desk, index: int) -> Guide:
+    guide = desk.app.guide
+    guide._go(index)
+    ready(desk)
+    return guide
+
+
+def test_a_choice_by_keyboard_then_it_is_tried_and_told(desk: Desk, tmp_path: Path) -> None:
+    guide, focus = desk.app.guide, desk.app.stage.focus
+    assert focus.name == f"{OPTION}0"
+    assert guide.page.onward == words.ASK_WITHOUT
+    assert guide.page.do == ""  # first the guess
+    desk.key(pygame.K_DOWN)
+    desk.key(pygame.K_UP)
+    desk.key(pygame.K_SPACE, " ")
+    assert (guide.page.chosen, guide.page.onward) == (0, words.ASK_KEEP)
+    desk.key(pygame.K_RETURN, "\r")
+    assert (guide.asking.on, guide.page.do) == (False, "Drag.")
+    assert [(row["step"], row["given"], row["right"]) for row in rows(tmp_path)] == [
+        ("pick", "1", "no")
+    ]
+    assert focus.on_canvas
+    drag_handle(desk, 3.0)
+    why = "You said: this. It is: that. That, as everybody knows."
+    assert guide.page.why == why
+
+
+def test_a_choice_by_mouse(desk: Desk, tmp_path: Path) -> None:
+    desk.click(button(desk, f"{OPTION}1"))
+    assert desk.app.guide.page.chosen == 1
+    desk.click(button(desk, NEXT))
+    assert rows(tmp_path)[0]["right"] == "yes"
+
+
+def test_nothing_moves_before_the_guess(desk: Desk) -> None:
+    stage, guide = desk.app.stage, desk.app.guide
+    assert desk.paused()
+    start = desk.handle_place()
+    desk.press(start)
+    assert not stage.mouse.holding
+    desk.release(start)
+    for key in (pygame.K_a, pygame.K_s):
+        desk.key(key)
+        assert stage.notices.latest == words.ASK_FIRST
+    desk.key(pygame.K_m)  # the menu, and back
+    desk.key(pygame.K_m)
+    desk.app.tick()
+    assert desk.paused()
+    desk.click(button(desk, NEXT))  # no guess
+    assert (guide.asking.on, desk.paused()) == (False, False)
+
+
+def test_closing_lets_go(desk: Desk, tmp_path: Path) -> None:
+    desk.key(pygame.K_ESCAPE)
+    assert not desk.app.guide.on
+    assert not desk.paused()
+    assert rows(tmp_path) == []
+
+
+def test_a_number_is_typed(desk: Desk, tmp_path: Path) -> None:
+    guide = to_step(desk, 1)
+    assert desk.app.stage.focus.name == FIELD
+    desk.type("x")
+    assert guide.page.onward == words.ASK_WITHOUT  # that is no number
+    desk.key(pygame.K_BACKSPACE)
+    desk.type("3,4")
+    assert guide.page.field is not None
+    assert (guide.page.field.text, guide.page.field.unit) == ("3,4", "k R")
+    desk.key(pygame.K_RETURN, "\r")
+    assert guide.done
+    assert guide.page.why == f"You said: 3.4 k R. {words.ASK_RIGHT}"
+    assert rows(tmp_path)[0]["given"] == "3.4"
+
+
+def test_a_sketch_by_mouse_stays_over_the_curve(desk: Desk, tmp_path: Path) -> None:
+    guide = to_step(desk, 2)
+    asking, box = guide.asking, desk.app.stage.renderer.plot_box
+    assert box is not None
+    assert (box.low, box.high) == (0.0, 30.0)
+    assert box.top >= 4.0
+    start = (float(box.x(1.0)), float(box.y(1.0)))
+    desk.press(start)
+    for stroke, force in ((3.0, 2.0), (5.0, 3.0)):
+        desk.point((float(box.x(stroke)), float(box.y(force))), pressed=True)
+    desk.release((float(box.x(5.0)), float(box.y(3.0))))
+    assert asking.sketch is not None
+    drawn = np.isfinite(asking.sketch.up)
+    assert np.interp(3.0, asking.sketch.along[drawn], asking.sketch.up[drawn]) == pytest.approx(
+        2.0, abs=0.3
+    )
+    assert asking.sketch.along[drawn][[0, -1]] == pytest.approx([1.0, 5.0], abs=0.5)
+    desk.click(button(desk, NEXT))
+    assert asking.sketch is not None  # it lies there while it is measured
+    drag_handle(desk, 1.0)
+    assert [row["what"] for row in rows(tmp_path)] == ["predicted", "measured"]
+    guide._go(0)
+    assert desk.app.stage.renderer.plot_least is None
+
+
+def test_a_sketch_by_keyboard(desk: Desk) -> None:
+    asking = to_step(desk, 2).asking
+    assert desk.app.stage.focus.name == SKETCH
+    desk.key(pygame.K_SPACE, " ")
+    for key in (*[pygame.K_RIGHT] * 8, *[pygame.K_UP] * 20):
+        desk.key(key)
+    desk.key(pygame.K_SPACE, " ")
+    assert asking.sketch is not None
+    drawn = np.flatnonzero(np.isfinite(asking.sketch.up))
+    assert drawn.tolist() == list(range(17))
+    assert asking.sketch.up[[0, 8, 16]] == pytest.approx([0.0, 1.0, 2.0])
+    desk.key(pygame.K_BACKSPACE)
+    assert not asking.sketch.there
+    desk.key(pygame.K_RETURN, "\r")  # without
+    assert not desk.paused()
+
+
+def test_controls_are_kept_out_of_sight(desk: Desk) -> None:
+    app = desk.app
+
+    def there() -> set[str]:
+        app.panel.tick(0.0)
+        return {place.control.name for place in app.panel._places.all}
+
+    app.panel.folded.clear()
+    before = there()
+    hidden = {"general/packing", "general/seed", "general/new", "grains/friction", "files/save"}
+    assert not before & hidden
+    assert {"general/view", "solver/step"} <= before
+    for key in (pygame.K_n, pygame.K_1, pygame.K_w):
+        app.stage.toast("")
+        desk.key(key)
+        assert app.stage.notices.latest == words.HIDDEN_HERE or key == pygame.K_1
+    assert app.stage.panes.seed == 1
+    to_step(desk, 2)
+    assert "solver/step" not in there()
+    app.guide.close()
+    assert hidden <= there()
