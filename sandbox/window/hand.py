@@ -13,15 +13,19 @@ from sandbox.session.commands import Command, Grab, Move, Release
 from sandbox.session.frame import Frame, HandleState
 
 REACH = 24.0  # a handle can be taken from at least this far at scale 1 [px]
+STILL = 0.25  # of the reach: a press that moves less is a click
 
 Send = Callable[[Command], None]
 
 
 class Mouse:
-    """What the mouse hovers over and holds."""
+    """What the mouse hovers over and holds: with its button down, or without where a click has picked it up."""
 
     def __init__(self) -> None:
         self.hover: HandleState | None = None
+        self.carrying = False  # held without a button, until the next click
+        self._pressed: tuple[int, int] | None = None  # where, until it has moved
+        self._still = 0.0  # what is no more than a click [px]
         self._held: HandleState | None = None
         self._offset = (0.0, 0.0)  # from the cursor to the held body's handle [R]
         self._target: tuple[float, float] | None = None
@@ -57,7 +61,7 @@ class Mouse:
         self.look(place, frame, camera, reach)
         if self.hover is None:
             return False
-        self._held = self.hover
+        self._held, self._pressed, self._still = self.hover, place, STILL * reach
         x, y = camera.to_world(*place)
         self._offset = (self._held.x - x, self._held.y - y)
         self._target = (self._held.x, self._held.y)
@@ -65,10 +69,17 @@ class Mouse:
         send(Grab(self._held.name))
         return True
 
+    def click(self) -> bool:
+        """The button is up: was it a click, which picks the handle up?"""
+        self.carrying, self._pressed = self._pressed is not None, None
+        return self.carrying
+
     def move(self, place: tuple[int, int], camera: Camera, bounds: pygame.Rect) -> None:
         """The cursor has moved; a held handle is to follow. Outside the canvas its edge counts."""
         if self._held is None:
             return
+        if self._pressed is not None and math.dist(place, self._pressed) > self._still:
+            self._pressed = None
         x = min(max(place[0], bounds.left), bounds.right)
         y = min(max(place[1], bounds.top), bounds.bottom)
         world = camera.to_world(x, y)
@@ -96,7 +107,8 @@ class Mouse:
 
     def forget(self) -> None:
         """Hold nothing, without a word to the solver."""
-        self._held = self._target = self._sent = None
+        self._held = self._target = self._sent = self._pressed = None
+        self.carrying = False
 
     def cursor(self) -> int:
         """The system cursor that says what can be done here."""

@@ -195,8 +195,10 @@ class Timeline(Silent):
             return self._key(event)
         if event.type == pygame.MOUSEMOTION:
             return self._motion(event)
+        if self.stage.mouse.holding:
+            return False
         if event.type == pygame.MOUSEBUTTONDOWN and self.rect.collidepoint(event.pos):
-            if event.button == 1 and not self.stage.mouse.holding:
+            if event.button == 1:
                 self._down(event.pos)
             return True
         if event.type == pygame.MOUSEBUTTONUP and self._dragging:

@@ -15,7 +15,7 @@ import pytest
 from core.errors import InputError
 from sandbox.files.log_file import read_log
 from sandbox.files.scene_file import write_scene
-from sandbox.session.commands import Change, Grab, Move, Protocol, Release, Reset
+from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset
 from sandbox.window import display
 from sandbox.words import language, words
 from scenes import registry
@@ -72,7 +72,8 @@ def test_hover_changes_the_cursor(running: Desk) -> None:
     assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_HAND
     running.press(running.handle_place())
     assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_SIZEALL
-    running.release(running.handle_place())
+    running.point((3, 300), pressed=True)
+    running.release((3, 300))
     running.point((3, 300))
     assert running.app.stage.mouse.cursor() == pygame.SYSTEM_CURSOR_ARROW
 
@@ -90,6 +91,41 @@ def test_leaving_the_window_lets_go(running: Desk) -> None:
     running.press(running.handle_place())
     running.post(pygame.WINDOWFOCUSLOST)
     running.until(lambda: Release("intruder") in running.session.commands)
+
+
+def test_a_click_picks_up_and_a_click_puts_down(running: Desk) -> None:
+    """The other way to move a handle, for whom holding a button is hard."""
+    x, y = running.handle_place()
+    running.click((x, y))
+    mouse = running.app.stage.mouse
+    assert mouse.carrying
+    running.point((x + 40, y))  # with no button down
+    running.until(lambda: any(isinstance(done, Move) for done in running.session.commands))
+    assert Release("intruder") not in running.session.commands
+    running.press((x + 60, y))  # wherever that is
+    assert not mouse.holding
+    running.release((x + 60, y))
+    running.until(lambda: Release("intruder") in running.session.commands)
+    assert running.app.inspector.label is None  # that click looked at no grain
+    moves = [done for done in running.session.commands if isinstance(done, Move)]
+    world = running.app.stage.renderer.camera.to_world
+    assert moves[-1].x - moves[0].x == pytest.approx(world(60, y)[0] - world(0, y)[0])
+
+
+def test_what_is_carried_is_put_down_over_panel_and_time_line_and_by_escape(running: Desk) -> None:
+    mouse = running.app.stage.mouse
+    bar = running.app.timeline.bar()
+    assert bar is not None
+    for place in (running.app.panel.rect.center, bar.rect.center):
+        running.click(running.handle_place())
+        assert mouse.carrying
+        running.click(place)
+        assert not mouse.holding
+    running.click(running.handle_place())
+    running.key(pygame.K_ESCAPE)
+    assert not mouse.holding
+    assert running.page() == "run"
+    assert not any(isinstance(done, Recall) for done in running.session.commands)
 
 
 def test_pause_step_and_drive(running: Desk) -> None:

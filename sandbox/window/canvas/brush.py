@@ -129,7 +129,7 @@ class Brush(Silent):
 
     def _down(self, pos: tuple[int, int]) -> bool:
         camera = self._camera_at(pos)
-        if camera is None:
+        if camera is None or self.stage.mouse.holding:
             return False
         frame = self.stage.picture.panes()[self._pane][0]
         reach = REACH * self.stage.renderer.scale

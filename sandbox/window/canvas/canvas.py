@@ -1,4 +1,7 @@
-"""The mouse on the canvases: it takes a handle in one packing, and the hand pulls in all of them."""
+"""The mouse on the canvases: it takes a handle in one packing, and the hand pulls in all of them.
+
+A handle is dragged; or a click picks it up, the mouse leads it with no button down, and another click or Escape puts it down.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import pygame
 from sandbox.window.hand import REACH
 from sandbox.window.parts import Silent
 from sandbox.window.stage import Stage
+from sandbox.words import words
 
 
 class Canvas(Silent):
@@ -17,7 +21,9 @@ class Canvas(Silent):
         self._held_in = 0  # the pane in which the mouse holds something
 
     def handle(self, event: pygame.event.Event) -> bool:
-        """Move, press and release."""
+        """Move, press and release; Escape puts down what is carried."""
+        if event.type == pygame.KEYDOWN:
+            return event.key == pygame.K_ESCAPE and self._put_down()
         if event.type not in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             return False
         stage, mouse = self.stage, self.stage.mouse
@@ -36,11 +42,27 @@ class Canvas(Silent):
             pass
         elif event.type == pygame.MOUSEBUTTONUP:
             mouse.move(event.pos, camera, canvas)
-            mouse.release(stage.send)
+            if not mouse.holding:
+                pass
+            elif mouse.click():
+                stage.toast(words.CARRYING)
+            else:
+                mouse.release(stage.send)
             mouse.look(event.pos, frame, camera, reach)
+        elif mouse.carrying:
+            mouse.move(event.pos, camera, canvas)
+            self._put_down()
         elif there is not None and mouse.press(event.pos, frame, camera, reach, stage.send):
             self._held_in = there
             stage.has_begun()
+        return True
+
+    def _put_down(self) -> bool:
+        """What is carried; False if nothing is."""
+        mouse = self.stage.mouse
+        if not mouse.carrying:
+            return False
+        mouse.release(self.stage.send)
         return True
 
     def cursor(self) -> int | None:

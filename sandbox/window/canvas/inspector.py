@@ -113,7 +113,7 @@ class Inspector(Silent):
                 self.look(None)
                 return True
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-            self._press = event.pos
+            self._press = None if self.stage.mouse.holding else event.pos
         elif event.type == pygame.MOUSEBUTTONUP and event.button == 1:
             press, self._press = self._press, None
             still = press is not None and math.dist(press, event.pos) <= (
