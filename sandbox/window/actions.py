@@ -62,6 +62,8 @@ class Actions:
             )
         elif action is Action.SOUND:
             self._switch_sound()
+        elif action is Action.TONE:
+            self._switch_tone()
         elif action in (Action.RECORD, Action.RECORD_GIF):
             suffix = ".mp4" if action is Action.RECORD else ".gif"
             scene = self.stage.panes.scene or "menu"
@@ -208,6 +210,14 @@ class Actions:
             self.stage.toast(words.NO_SOUND)
         else:
             self.stage.toast(words.SOUND_ON if self.stage.sound.on else words.SOUND_OFF)
+
+    def _switch_tone(self) -> None:
+        tone = self.stage.tone
+        if not tone.switch():
+            self.stage.toast(words.NO_SOUND)
+        else:
+            self.stage.toast(words.TONE_ON if tone.on else words.TONE_OFF)
+            self.stage.prefer(tone=tone.on)
 
     def _rescale(self, way: int) -> None:
         nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - self.stage.renderer.scale))

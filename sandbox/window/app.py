@@ -167,6 +167,7 @@ class App:
         stage = self.stage
         stage.running = False
         stage.mouse.release(stage.send)
+        stage.tone.close()
         stage.sound.close()
         self.pages.explore.explorer.stop()
         self.farewell = stage.recorder.close()
@@ -202,6 +203,7 @@ class App:
         if said := stage.recorder.tick(stage.renderer.surface, now):
             stage.toast(said)
         stage.dirty |= stage.recorder.second_passed(now)
+        stage.tone.follow(snapshot.frame if stage.parts_now() else None, now)
         moving = self._splash or stage.picture.moving or stage.mouse.holding
         if stage.dirty or moving or now - self._drawn >= REST:
             self._draw(snapshot, now)
@@ -224,7 +226,7 @@ class App:
                 renderer.type,
                 text=_sentence(words.say(snapshot.text) or words.SPLASH_STEP),
                 fraction=snapshot.fraction,
-                seconds=now - self._begun,
+                seconds=0.0 if stage.still else now - self._begun,
             )
         else:
             if not page:

@@ -51,6 +51,7 @@ class Action(enum.Enum):
     RECORD = enum.auto()
     RECORD_GIF = enum.auto()
     SOUND = enum.auto()
+    TONE = enum.auto()
     EXPORT = enum.auto()
     SAVE = enum.auto()
     EXPLORE = enum.auto()
@@ -92,6 +93,7 @@ _SIGNS = {
     "g": Action.RECORD,
     "G": Action.RECORD_GIF,
     "o": Action.SOUND,
+    "O": Action.TONE,
     "e": Action.EXPORT,
     "w": Action.SAVE,
     "x": Action.EXPLORE,

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import pygame
 
 from sandbox.draw.camera import Camera
-from sandbox.draw.flashes import Flashes
+from sandbox.draw.flashes import Flash, Flashes
 from sandbox.draw.overlays import Hand
 from sandbox.draw.plot import Curve
 from sandbox.draw.render import Renderer
@@ -29,6 +29,7 @@ class Picture:
         self._panes, self._renderer = panes, renderer
         self._flashes = Flashes()
         self._lit = False
+        self.still = False  # no flashes
         self.events: tuple[str, ...] = ()  # kinds of those that were new in the latest picture
 
     @property
@@ -66,8 +67,7 @@ class Picture:
         """All panes; at least one of them must have a frame."""
         snapshots = self._panes.snapshots
         frames = [seen.frame for seen in snapshots]
-        lit = self._flashes.follow(frames, now)
-        self._lit, self.events = bool(lit), self._flashes.new
+        lit = self._lights(frames, now)
         first = next(frame for frame in frames if frame is not None)
         several = len(snapshots) > 1
         self._renderer.draw(
@@ -80,6 +80,15 @@ class Picture:
             kept=[kept_curve(kept) for kept in self._panes.curves.shown(first)],
             flashes=lit,
         )
+
+    def _lights(self, frames: Sequence[Frame | None], now: float) -> list[Flash]:
+        """What lights up at ``now`` [s], and which events are new."""
+        lit = self._flashes.follow(frames, now)
+        self.events = self._flashes.new
+        if self.still:
+            lit = []
+        self._lit = bool(lit)
+        return lit
 
 
 def progress_of(snapshot: Snapshot) -> str:

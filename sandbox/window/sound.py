@@ -32,6 +32,15 @@ def tick(kind: str) -> NDArray[np.int16]:
     return np.rint(LOUDNESS * 32767.0 * wave).astype(np.int16)
 
 
+def open_device() -> bool:
+    """Have sounds played; False if there is no sound device."""
+    try:
+        pygame.mixer.init(RATE, -16, 1, 512)
+    except (pygame.error, NotImplementedError):
+        return False
+    return True
+
+
 class Sound:
     """Plays ticks when it is on."""
 
@@ -42,14 +51,9 @@ class Sound:
     def switch(self) -> bool:
         """On or off; False if there is no sound device."""
         if not self.on and not self._sounds:
-            try:
-                pygame.mixer.init(RATE, -16, 1, 512)
-                self._sounds = {
-                    kind: pygame.mixer.Sound(buffer=tick(kind).tobytes()) for kind in TICKS
-                }
-            except (pygame.error, NotImplementedError):
-                self._sounds = {}
+            if not open_device():
                 return False
+            self._sounds = {kind: pygame.mixer.Sound(buffer=tick(kind).tobytes()) for kind in TICKS}
         self.on = not self.on
         return True
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import pygame
 
 from core.errors import InputError
 from sandbox.draw.render import Renderer
+from sandbox.files import preferences
 from sandbox.files.autosave import Leftover
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command
@@ -16,11 +18,13 @@ from sandbox.window.display import Looks, natural_scale, open_display
 from sandbox.window.film import Recorder
 from sandbox.window.focus import Focus
 from sandbox.window.hand import Mouse
+from sandbox.window.motion import little_motion_wished
 from sandbox.window.notices import Notices
 from sandbox.window.parts import Part
 from sandbox.window.picture import Picture
 from sandbox.window.solvers.panes import Panes, Wanted
 from sandbox.window.sound import Sound
+from sandbox.window.tone import Tone
 from sandbox.words import words
 from scenes.text import message
 
@@ -47,6 +51,11 @@ class Stage:
         self.picture = Picture(panes, self.renderer)
         self.recorder = Recorder()
         self.sound = Sound()
+        self.tone = Tone()
+        self.preferences = preferences.read()
+        self.picture.still = self.still
+        if self.preferences.tone and not self.tone.switch():
+            self.toast(words.NO_SOUND)
         self.focus = Focus(handle)
         self.focus.busy = lambda: any(frame.busy for frame, _, _ in self.picture.panes())
         self._forget: list[Callable[[], None]] = []
@@ -120,6 +129,23 @@ class Stage:
     def toast(self, text: str) -> None:
         """A notice of the window's own, for a moment."""
         self.notices.say(text)
+        self.dirty = True
+
+    @property
+    def still(self) -> bool:
+        """Is nothing to move by itself but the grains? As chosen, else as the system has it."""
+        chosen = self.preferences.still
+        return little_motion_wished() if chosen is None else chosen
+
+    def prefer(self, **chosen: bool) -> None:
+        """Choose something for this window and all to come."""
+        self.preferences = replace(self.preferences, **chosen)
+        self.picture.still = self.still
+        try:
+            preferences.write(self.preferences)
+        except OSError as error:
+            reason = error.strerror or str(error)
+            self.toast(words.NOT_SAVED.format(name=preferences.path().name, reason=reason))
         self.dirty = True
 
     def forget_picture(self) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from sandbox.files import autosave
+from sandbox.files import autosave, preferences
 from sandbox.words import language
 
 
@@ -18,6 +18,16 @@ def own_autosaves(
     """A folder for autosaves that nobody else uses."""
     place = tmp_path_factory.mktemp("autosave")
     monkeypatch.setattr(autosave, "folder", lambda: place)
+    return place
+
+
+@pytest.fixture(autouse=True)
+def own_preferences(
+    monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
+    """A file of preferences that nobody else uses; there is none yet."""
+    place = tmp_path_factory.mktemp("preferences") / "preferences.json"
+    monkeypatch.setattr(preferences, "path", lambda: place)
     return place
 
 

@@ -70,8 +70,8 @@ class Person:
 
     def __init__(self, display: str, folder: Path) -> None:
         # A home of its own: nothing that an earlier program left behind is offered in the menu.
-        data = folder / "data"
-        self.environment = {**os.environ, "DISPLAY": display, "XDG_DATA_HOME": str(data)}
+        own = {"XDG_DATA_HOME": str(folder / "data"), "XDG_CONFIG_HOME": str(folder / "config")}
+        self.environment = {**os.environ, "DISPLAY": display, **own}
         self.folder = folder
 
     def do(self, *words: object) -> str:

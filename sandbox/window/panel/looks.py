@@ -13,7 +13,7 @@ SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
 
 
 class LooksSection(StageSection):
-    """Force chains, theme, size of text, language, sound."""
+    """Force chains, theme, size of text, language, sound, motion."""
 
     name = "looks"
 
@@ -36,6 +36,10 @@ class LooksSection(StageSection):
             Switch(
                 "looks/sound", words.LOOK_SOUND, self.stage.sound.on, help=words.LOOK_SOUND_HELP
             ),
+            Switch("looks/tone", words.LOOK_TONE, self.stage.tone.on, help=words.LOOK_TONE_HELP),
+            Switch(
+                "looks/motion", words.LOOK_MOTION, self.stage.still, help=words.LOOK_MOTION_HELP
+            ),
             Button("looks/picture", words.LOOK_PICTURE, help=words.LOOK_PICTURE_HELP),
         ]
 
@@ -47,6 +51,10 @@ class LooksSection(StageSection):
                 self.actions.act(Action.CHAINS)
             case "sound":
                 self.actions.act(Action.SOUND)
+            case "tone":
+                self.actions.act(Action.TONE)
+            case "motion":
+                self.stage.prefer(still=bool(value))
             case "picture":
                 self.actions.act(Action.SCREENSHOT)
             case "theme":
