@@ -62,6 +62,10 @@ class Contacts:
     i: IntArray = field(default_factory=_no_grains)  # (C,)
     j: IntArray = field(default_factory=_no_grains)  # (C,) -1: a rigid body
 
+    # The whole force on grain i, friction and all; on the other side the opposite. Empty where nobody knows.
+    fx: FloatArray = field(default_factory=_no_numbers)  # (C,) [k R]
+    fy: FloatArray = field(default_factory=_no_numbers)  # (C,) [k R]
+
     @classmethod
     def none(cls) -> Contacts:
         """No contact at all."""

@@ -11,6 +11,7 @@ from core.observables import grain_stress
 from core.packing import Packing, PeriodicBox
 from core.rigid import Point, RigidBody
 from core.rigid_contacts import DISC
+from sandbox.session.forces import contact_forces
 from sandbox.session.frame import Ahead, BodyShape, Contacts, Frame, HandleState
 from sandbox.session.history import History
 from sandbox.session.run import Run
@@ -111,6 +112,7 @@ def _contact_lines(
 ) -> Contacts:
     """Lines from where the grains are drawn, ``x`` and ``y`` (N,); a line that leaves the periodic cell goes on outside."""
     pairs, bodies = run.last.grain_contacts, run.last.body_contacts
+    whole = contact_forces(run.last, run.setup.world)
     grain_x, grain_y = x[bodies.grain], y[bodies.grain]
     body_x = bodies.x + grain_x - packing.x[bodies.grain]
     body_y = bodies.y + grain_y - packing.y[bodies.grain]
@@ -127,6 +129,8 @@ def _contact_lines(
         rigid=np.repeat([False, True], [len(pairs.i), len(bodies.grain)]),
         i=np.concatenate([pairs.i, bodies.grain]),
         j=np.concatenate([pairs.j, np.full(len(bodies.grain), -1)]),
+        fx=whole.fx,
+        fy=whole.fy,
     )
 
 

@@ -29,6 +29,7 @@ HIDES = {
     Action.COMPARE: "compare",
     Action.PROTOCOL: "drive",
     Action.BRUSH: "brush",
+    Action.MEASURE: "measure",
     Action.EXPLORE: "explore",
     Action.RECORD: "record",
     Action.RECORD_GIF: "record",

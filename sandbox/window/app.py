@@ -29,6 +29,7 @@ from sandbox.window.display import FRAMES, USUAL, Looks, Rate
 from sandbox.window.film import found_films
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action, action_of
+from sandbox.window.measure.measuring import Measuring
 from sandbox.window.pages import Pages
 from sandbox.window.panel.curves import CurvesSection
 from sandbox.window.panel.general import GeneralSection
@@ -119,15 +120,17 @@ class App:
         self.timeline = Timeline(stage, self.actions)
         self.inspector = Inspector(stage)
         self.brush = Brush(stage)
+        self.measuring = Measuring(stage, self.brush)
         reel = Reel(stage)
         self.question = ExportQuestion(stage, reel)
         arrows = Arrows(stage)
         self.panel = Panel(stage, self.guide, folded={"solver", "files", "looks"})
         self.panel.sections += [
-            GeneralSection(stage, self.actions, self.brush, self.guide),
+            GeneralSection(stage, self.actions, self.brush, self.guide, self.measuring),
             self.timeline,
             self.inspector,
             self.brush,
+            self.measuring,
             *(ParameterSection(name, wishes) for name in ("hand", "grains", "geometry", "solver")),
             CurvesSection(stage, self.actions),
             FilesSection(stage, self.actions),
@@ -140,6 +143,7 @@ class App:
             self.guide.asking,
             self.timeline,
             wishes,
+            self.measuring,
             self.brush,
             self.inspector,
             arrows,

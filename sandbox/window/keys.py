@@ -55,6 +55,7 @@ class Action(enum.Enum):
     EXPORT = enum.auto()
     SAVE = enum.auto()
     EXPLORE = enum.auto()
+    MEASURE = enum.auto()
 
 
 PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
@@ -97,6 +98,7 @@ _SIGNS = {
     "e": Action.EXPORT,
     "w": Action.SAVE,
     "x": Action.EXPLORE,
+    "d": Action.MEASURE,
 }
 
 _KEYS = {

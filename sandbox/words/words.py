@@ -19,6 +19,8 @@ __all__ = [
     "KINDS",
     "KINDS_SHORT",
     "LENGTH_UNIT",
+    "MEASURES",
+    "MEASURES_HELP",
     "PACKINGS",
     "PERCENT",
     "SECTIONS",
@@ -56,6 +58,8 @@ BUTTONS = Section("buttons")
 BUTTONS_HELP = Section("buttons_help")
 EVENTS = Section("events")
 KINDS = Section("kinds")
+MEASURES = Section("measures")
+MEASURES_HELP = Section("measures_help")
 KINDS_SHORT = Section("kinds_short")
 PACKINGS = Section("packings")
 SECTIONS = Section("sections")

@@ -130,7 +130,7 @@ def number(desk: Desk, name: str) -> tuple[int, int]:
 
 def go_to(desk: Desk, name: str) -> None:
     """By Tab alone."""
-    for _ in range(60):
+    for _ in range(90):
         if desk.app.stage.focus.ring == name:
             return
         desk.key(pygame.K_TAB)

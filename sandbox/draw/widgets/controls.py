@@ -19,6 +19,7 @@ GAP = 6.0  # between controls [px]
 BOX = 80.0  # width of a typed number [px]
 THUMB = 9.0  # radius of a slider's thumb [px]
 PAD = 12.0  # beside the controls [px]
+BARS = 46.0  # height of the highest bar [px]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +138,20 @@ class Fact:
 
 
 @dataclass(frozen=True, slots=True)
+class Bars:
+    """How something is spread: a bar a bin, as high as its share, over an axis from ``low`` to ``high``."""
+
+    title: str
+    value: str  # mean and spread, in words
+    shares: tuple[float, ...]
+    low: str
+    high: str
+    colour: int
+    name: str = ""
+    help: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Note:
     """A paragraph to read."""
 
@@ -145,7 +160,7 @@ class Note:
     help: str = ""
 
 
-Simple = Slider | Switch | Choice | Stepper | Button | TextField | Heading | Fact | Note
+Simple = Slider | Switch | Choice | Stepper | Button | TextField | Heading | Fact | Bars | Note
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +250,8 @@ def _height(control: Simple, type_: Type, width: int) -> int:
             return target + (line if title else 0)
         case Fact():
             return type_.height(BODY)
+        case Bars():
+            return type_.height(BODY) + round(BARS * type_.scale) + line
         case Note(text=text):
             return max(len(type_.wrapped(text, SMALL, width)), 1) * line
         case _:

@@ -12,8 +12,10 @@ from sandbox.draw.signs import SIGNS, draw_sign
 from sandbox.draw.text import BODY, SMALL
 from sandbox.draw.theme import HAND, Theme, mix
 from sandbox.draw.widgets.controls import (
+    BARS,
     PAD,
     THUMB,
+    Bars,
     Button,
     Choice,
     Fact,
@@ -117,6 +119,8 @@ def draw_control(painter: Painter, place: Place, attention: Attention) -> None:
             _draw_heading(painter, control, rect, hover)
         case Fact():
             _draw_fact(painter, control, rect)
+        case Bars():
+            _draw_bars(painter, control, rect)
         case Note():
             _draw_note(painter, control, rect)
     if control.name and attention.focus == control.name:
@@ -334,6 +338,25 @@ def _draw_fact(painter: Painter, fact: Fact, rect: pygame.Rect) -> None:
     size = type_.fitting(fact.title, SMALL, room)
     title = type_.shortened(fact.title, size, room)
     painter.text(title, rect.left, rect.centery, size=size, colour=soft)
+
+
+def _draw_bars(painter: Painter, bars: Bars, rect: pygame.Rect) -> None:
+    """A line of words, the bars on their axis, and what its ends mean."""
+    type_, theme, scale = painter.type, painter.theme, painter.scale
+    head = pygame.Rect(rect.left, rect.top, rect.width, type_.height(BODY))
+    _draw_fact(painter, Fact(bars.title, bars.value, strong=True), head)
+    base = head.bottom + round(BARS * scale)
+    painter.fill(pygame.Rect(rect.left, base, rect.width, max(round(scale), 1)), theme.soft_text)
+    top = max((*bars.shares, 1e-9))
+    wide = rect.width / max(len(bars.shares), 1)
+    for index, share in enumerate(bars.shares):
+        high = round(share / top * (BARS - 4.0) * scale)
+        left, right = round(rect.left + index * wide), round(rect.left + (index + 1) * wide)
+        gap = max(round(scale), 1)
+        painter.fill(pygame.Rect(left, base - high, right - left - gap, high), bars.colour)
+    y = base + type_.height(SMALL) // 2 + round(scale)
+    painter.text(bars.low, rect.left, y, size=SMALL, colour=theme.soft_text)
+    painter.text(bars.high, rect.right, y, size=SMALL, colour=theme.soft_text, anchor="right")
 
 
 def _draw_note(painter: Painter, note: Note, rect: pygame.Rect) -> None:

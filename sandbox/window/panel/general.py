@@ -12,6 +12,7 @@ from sandbox.window.actions import Actions
 from sandbox.window.canvas.brush import Brush
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
+from sandbox.window.measure.measuring import Measuring
 from sandbox.window.sections import Value
 from sandbox.window.stage import Stage
 from sandbox.words import words
@@ -27,6 +28,7 @@ ACTIONS = {
     "export": Action.EXPORT,
     "drive": Action.PROTOCOL,
     "brush": Action.BRUSH,
+    "measure": Action.MEASURE,
     "new": Action.NEW_SEED,
     "menu": Action.MENU,
     "help": Action.HELP,
@@ -41,8 +43,11 @@ class GeneralSection:
     name = "general"
     title = ""
 
-    def __init__(self, stage: Stage, actions: Actions, brush: Brush, guide: Guide) -> None:
+    def __init__(
+        self, stage: Stage, actions: Actions, brush: Brush, guide: Guide, measuring: Measuring
+    ) -> None:
         self.stage, self.actions, self.brush, self.guide = stage, actions, brush, guide
+        self.measuring = measuring
 
     @property
     def there(self) -> bool:
@@ -103,7 +108,13 @@ class GeneralSection:
                     self._button("brush", on=self.brush.on),
                 )
             ),
-            Row((self._button("record", on=self.stage.recorder.recording), self._button("export"))),
+            Row(
+                (
+                    self._button("record", on=self.stage.recorder.recording),
+                    self._button("export"),
+                    self._button("measure", on=self.measuring.on),
+                )
+            ),
         ]
         return controls
 
