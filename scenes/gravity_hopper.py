@@ -166,6 +166,7 @@ class GravityHopper(Scene):
             bounds=(-half_width - WALL - SHAKE, -DROP, half_width + WALL + SHAKE, brim),
             outline=[*left, *right],
             outlet=shape.outlet(-DROP, beside=False),  # they are seen to sink on
+            focus=(shape.focus(-DROP, SHAKE),),
             friction=friction(settings, len(packed)),
             gravity=gravity,
             drag=drag,

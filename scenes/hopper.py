@@ -19,6 +19,7 @@ from scenes.registry import register
 from scenes.scene import (
     FRICTION,
     SOLVER,
+    Bounds,
     Handle,
     Holding,
     Latest,
@@ -139,6 +140,7 @@ class Hopper(Scene):
             bounds=(-half_width - WALL, -4.0, half_width + WALL, brim),
             outline=[(half_width, brim), (-half_width, brim), left[1], left[2], right[0], right[1]],
             outlet=shape.outlet(-LEFT_BEHIND, beside=True),
+            focus=(shape.focus(-4.0),),
             friction=friction(settings, len(packed)),
         )
 
@@ -247,6 +249,11 @@ class Shape:
         right: list[Point] = [lip, end, shoulder, (far, shoulder[1]), (far, y)]
         left: list[Point] = [(-x, y) for x, y in reversed(right)]
         return Outlet(y, self.opening, (*right, *left), end[0] if beside else math.inf)
+
+    def focus(self, bottom: float, sway: float = 0.0) -> Bounds:
+        """The orifice with the arch that may stand over it, and what falls down to ``bottom`` [R]; it may ``sway`` [R]."""
+        aside = self.lip_x + 1.0 + sway
+        return -aside, bottom, aside, self.lip_y + self.opening + DIAMETER
 
     def check(self, least_channel: float) -> None:
         """Raises InputError unless the lips stand within the channel, and the grains fill so much of it [R] above the funnel."""

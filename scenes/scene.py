@@ -31,6 +31,7 @@ from scenes.parameter import Parameter, Value
 from scenes.text import Text, counted
 
 Values = Mapping[str, Value]
+Bounds = tuple[float, float, float, float]  # x0, y0, x1, y1 [R]
 
 
 @dataclass(frozen=True)
@@ -84,9 +85,12 @@ class Setup(System):
     """A scene that is built: the system that an engine works on, and what a person can do with it."""
 
     handles: tuple[Handle, ...]
-    bounds: tuple[float, float, float, float]  # what a camera should show: x0, y0, x1, y1 [R]
+    bounds: Bounds  # what a camera should show [R]
     outline: list[Point]  # the region that grains must not leave, the outlet apart [R]
     outlet: Outlet | None = None
+    focus: tuple[
+        Bounds, ...
+    ] = ()  # where it happens, besides at the handles: nothing that is said covers it [R]
     box_target: Callable[[Point], PeriodicBox] | None = None  # of the handle "box": where it goes
     box_handle: Callable[[PeriodicBox], Point] | None = (
         None  # where that handle is; None: the corner

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ import pygame
 
 from sandbox.draw import raster
 from sandbox.draw.camera import Camera
+from sandbox.draw.interest import Bounds, free_place, held_bodies, places_of_interest
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
@@ -98,12 +100,8 @@ def draw_handles(
     frame: Frame,
     hand: Hand,
     force_top: float,
-    free: pygame.Rect | None = None,
-) -> None:
-    """Lines to the hand's targets, knobs, and force arrows with their numbers.
-
-    ``free``: the part of the canvas in which numbers may stand.
-    """
+) -> list[pygame.Rect]:
+    """Lines to the hand's targets, knobs, and force arrows with their numbers; returns where the numbers stand [px]."""
     for handle in frame.handles:
         here = camera.to_screen(handle.x, handle.y)
         if not (math.isfinite(here[0]) and math.isfinite(here[1])):
@@ -115,8 +113,14 @@ def draw_handles(
         active = held or handle.target is not None
         lively = active or hand.hover == handle.name
         _draw_knob(painter, rect, here, handle, lively=lively)
+    knob = 1.4 * KNOB * mark_scale(painter, rect)
+    taken = places_of_interest(frame, camera, rect, knob)
+    labels: list[pygame.Rect] = []
     for handle in frame.handles:
-        _draw_force(painter, rect, camera, handle, force_top, rect if free is None else free)
+        own = held_bodies(frame, handle.name)
+        label = _draw_force(painter, rect, camera, handle, own, force_top, [*taken, *labels])
+        labels += [] if label is None else [label]
+    return labels
 
 
 def _draw_taut_line(
@@ -177,37 +181,38 @@ def _draw_force(
     rect: pygame.Rect,
     camera: Camera,
     handle: HandleState,
+    held: Sequence[Bounds],
     top: float,
-    free: pygame.Rect,
-) -> None:
-    """An arrow from the handle along the force of the hand, and the force as a number."""
+    taken: Sequence[pygame.Rect],
+) -> pygame.Rect | None:
+    """An arrow from the handle along the force of the hand, and the force as a number; returns where that stands.
+
+    It stands behind a body, where the hand comes from: in front of it is where things happen. Where the body is what all is in
+    it stands outside.
+    """
     size = math.hypot(handle.fx, handle.fy)
     x, y = camera.to_screen(handle.x, handle.y)
-    if not math.isfinite(size + x + y) or size < 0.005 * top:
-        return
+    if not math.isfinite(size + x + y) or size < 0.005 * top or not rect.collidepoint(x, y):
+        return None
     scale = mark_scale(painter, rect)
     way = (handle.fx / size, -handle.fy / size)
     start = (KNOB + 6.0) * scale
     root = (x + start * way[0], y + start * way[1])
     tip = _draw_arrow(painter, rect, root, way, min(size / top, 1.2) * ARROW_LONGEST * scale)
 
-    label = f"{number(size, decimals_for(top) + 2)} {FORCE_UNIT}"
-    type_, pad = painter.type, round(14 * scale)
-    widths = {each: type_.width(label, each, bold=True) + pad for each in (HEADING, BODY, SMALL)}
-    letters = next((each for each, width in widths.items() if width <= free.width), 0)
-    if not letters:
-        return
-    width, height = widths[letters], type_.height(letters, bold=True) + round(4 * scale)
-    plate = pygame.Rect(0, 0, width, height)
-    away = 0.5 * (width * abs(way[0]) + height * abs(way[1])) + 5.0 * scale
-    plate.center = (round(tip[0] + away * way[0]), round(tip[1] + away * way[1]))
-    plate.clamp_ip(free)
-    reach = KNOB * scale * 1.4
-    if plate.inflate(2.0 * reach, 2.0 * reach).collidepoint(x, y):  # no room beside the knob
-        if y - free.top > free.bottom - y:
-            plate.top = free.top
-        else:
-            plate.bottom = free.bottom
+    inside = rect.inflate(-round(4 * scale), -round(4 * scale))
+    label, type_ = f"{number(size, decimals_for(top) + 2)} {FORCE_UNIT}", painter.type
+    reach = _reach(camera, handle, held, start)
+    front = way if held else (inside.centerx - x, inside.centery - y)
+    for letters in (HEADING, BODY, SMALL, SMALL / type_.scale):  # the last: as small as can be read
+        width = type_.width(label, letters, bold=True) + round(14 * scale)
+        height = type_.height(letters, bold=True) + round(4 * scale)
+        wanted = _beside((x, y), way, front, reach, tip, (width, height), inside)
+        plate, covered = free_place((width, height), wanted, taken, inside)
+        if not covered and inside.contains(plate):
+            break
+    if not inside.contains(plate):
+        return None
     painter.box(
         plate,
         painter.theme.panel,
@@ -217,6 +222,47 @@ def _draw_force(
         alpha=0.94,
     )
     painter.text(label, *plate.center, size=letters, bold=True, anchor="centre", clip=rect)
+    return plate
+
+
+def _reach(
+    camera: Camera, handle: HandleState, held: Sequence[Bounds], knob: float
+) -> tuple[float, float, float, float]:
+    """How far the held body goes from its handle, to the left, up, to the right and down [px]; at least ``knob``."""
+    ends = [(handle.x - b[0], b[3] - handle.y, b[2] - handle.x, handle.y - b[1]) for b in held]
+    reach = [max([knob, *(camera.scale * end[side] for end in ends)]) for side in range(4)]
+    return reach[0], reach[1], reach[2], reach[3]
+
+
+def _beside(
+    place: tuple[float, float],
+    way: tuple[float, float],
+    front: tuple[float, float],
+    reach: tuple[float, float, float, float],
+    tip: tuple[float, float],
+    size: tuple[int, int],
+    inside: pygame.Rect,
+) -> list[tuple[float, float]]:
+    """Middles for a number [px], best first: away from the ``front``, at the sides, at the arrow's tip, anywhere near."""
+    (x, y), (half_x, half_y), gap = place, (0.5 * size[0], 0.5 * size[1]), 5.0
+    left, up, right, down = reach
+    sides = {
+        (-1.0, 0.0): (x - left - half_x - gap, y),
+        (0.0, -1.0): (x, y - up - half_y - gap),
+        (1.0, 0.0): (x + right + half_x + gap, y),
+        (0.0, 1.0): (x, y + down + half_y + gap),
+    }
+    behind = sorted(sides, key=lambda side: side[0] * front[0] + side[1] * front[1])
+    away = half_x * abs(way[0]) + half_y * abs(way[1]) + gap
+    found = [sides[side] for side in behind[:3]]
+    found.append((tip[0] + away * way[0], tip[1] + away * way[1]))
+    found.append(sides[behind[3]])
+    spots = [
+        (inside.left + inside.width * column / 6, inside.top + inside.height * row / 6)
+        for row in range(7)
+        for column in range(7)
+    ]
+    return found + sorted(spots, key=lambda spot: math.dist(spot, place))
 
 
 def _draw_arrow(

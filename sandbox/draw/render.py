@@ -19,15 +19,7 @@ from sandbox.draw.marks import Mark, marks
 from sandbox.draw.numbers import RoundScale, typical_largest
 from sandbox.draw.overlays import Hand, draw_chains, draw_handles
 from sandbox.draw.painter import Painter
-from sandbox.draw.pane import (
-    above,
-    cut,
-    draw_caption,
-    draw_plates,
-    draw_strip,
-    place_plates,
-    said_of,
-)
+from sandbox.draw.pane import cut, draw_strip, draw_words, said_of
 from sandbox.draw.periodic import draw_cell
 from sandbox.draw.plot import Axes, Curve, PlotBox, draw_plot, finite_part
 from sandbox.draw.squeezed import draw_squeezed
@@ -41,6 +33,7 @@ from sandbox.words import words
 
 LEAST_CHAIN, LEAST_PUSH = 0.02, 0.1  # tops of the force scales are never below these [k R]
 MARGIN = 14.0  # round the scene at scale 1 [px]
+END_OF_WORDS = 46.0  # at scale 1 [px]
 
 
 class Renderer:
@@ -65,7 +58,7 @@ class Renderer:
         self.theme = theme_named(theme)
         self.type = Type(scale)
         self.surface = pygame.Surface(size, 0, 32)
-        self._wanted: dict[str, Any] = {}  # of the layout: panes, panel, timeline
+        self._wanted: dict[str, Any] = {}  # of the layout: panes, panel, timeline, card
         self.layout: Layout = layout(size, scale)
         self.cameras: tuple[Camera, ...] = (
             Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0),
@@ -73,6 +66,7 @@ class Renderer:
         self.bodies = [self.layout.canvas]  # what of each canvas the grains have
         self.plot_least: Axes | None = None  # axes that the plot has at least
         self.plot_box: PlotBox | None = None  # inside the axes, of the latest picture
+        self.labels: list[pygame.Rect] = []  # where numbers stand on the canvases
         self.forget()
 
     @property
@@ -98,10 +92,22 @@ class Renderer:
             self.surface = pygame.Surface(size, 0, 32)
         self.layout = layout(size, self.type.scale, **self._wanted)
 
-    def arrange(self, *, panes: int = 1, panel: bool = False, timeline: bool = False) -> None:
-        """How many canvases, and whether there is a panel and a time line if there is room."""
-        self._wanted = {"panes": panes, "panel": panel, "timeline": timeline}
+    def arrange(
+        self, *, panes: int = 1, panel: bool = False, timeline: bool = False, card: int = 0
+    ) -> None:
+        """How many canvases, is there a panel and a time line if there is room, and how wide a card in the panel's stead?"""
+        self._wanted = {"panes": panes, "panel": panel, "timeline": timeline, "card": card}
         self.layout = layout(self.size, self.type.scale, **self._wanted)
+
+    @property
+    def words_place(self) -> pygame.Rect:
+        """Where the window's own words stand under the canvases, between what else it has there at both ends."""
+        return self.layout.said.inflate(-2 * self.end_of_words, 0)
+
+    @property
+    def end_of_words(self) -> int:
+        """Width of either end of the place for words, which is for what can be pressed and for marks [px]."""
+        return round(END_OF_WORDS * self.scale)
 
     def set_theme(self, name: str) -> None:
         """Dark or light."""
@@ -142,7 +148,8 @@ class Renderer:
 
         A frame that is not there yet leaves its canvas empty; at least one must be there. ``rate`` is what the status
         line says about frames a second; ``notices`` are the window's own, and ``told`` those of each pane, shown with
-        the frame's. ``kept`` are curves of earlier runs, drawn behind those of the frames.
+        the frame's: below the canvases, so that they cover nothing. ``kept`` are curves of earlier runs, drawn behind those
+        of the frames.
         """
         panes = [frames] if isinstance(frames, Frame) else list(frames)
         if len(panes) != len(self.layout.canvases):
@@ -158,26 +165,25 @@ class Renderer:
         looks, chain_top = self._looks(shown)
         forces = [math.hypot(handle.fx, handle.fy) for frame in shown for handle in frame.handles]
         hand_top = self._hand_scale.follow(max(forces, default=0.0))
-        foot = bodies[0].unionall(bodies[1:])  # the window's own words stand under all packings
-        plates = place_plates(self.type, foot, notices, foot.bottom - 10 * self.scale)
-        bottom = plates[-1].rect.top - 6 * self.scale if plates else foot.bottom - 10 * self.scale
         waiting = iter(looks)
+        self.labels = []
         for pane, frame in enumerate(panes):
             rect, camera = bodies[pane], self.cameras[pane]
-            said = () if frame is None else said_of(frame)
-            said = (*said, *(told[pane] if pane < len(told) else ()))
-            own = [] if feet[pane].height else place_plates(self.type, rect, said, bottom)
             if frame is not None:
                 self._draw_scene(painter, rect, camera, frame, next(waiting), chain_top)
                 for flash in flashes:
                     if flash.pane == pane:
                         draw_flash(painter, rect, camera, frame, flash)
-                free = above(rect, [*plates, *own], 0.4 * rect.height)
-                draw_handles(painter, rect, camera, frame, hand or Hand(), hand_top, free)
-            draw_plates(painter, own)
-            if feet[pane].height:
-                draw_caption(painter, feet[pane], said)
-        draw_plates(painter, plates)
+                held = hand or Hand()
+                self.labels += draw_handles(painter, rect, camera, frame, held, hand_top)
+            said = () if frame is None else said_of(frame)
+            said = (*said, *(told[pane] if pane < len(told) else ()))
+            if feet:
+                draw_words(painter, feet[pane], said)
+            else:
+                notices = (*said, *notices)
+        painter.fill(self.layout.said, self.theme.ground)
+        draw_words(painter, self.words_place, notices)
         draw_header(painter, self.layout.header, shown, looks[0], chain_top)
         labels = words.say(shown[0].curve_label), words.say(shown[0].stroke_label)
         limit = shown[0].hand_limit
@@ -186,6 +192,7 @@ class Renderer:
         self.plot_box = draw_plot(painter, self.layout.plot, curves, *labels, limit, least)
         painter.fill(self.layout.timeline, self.theme.panel)
         painter.fill(self.layout.panel, self.theme.panel)
+        painter.fill(self.layout.card, self.theme.panel)
         draw_status(painter, self.layout.status, shown, rate=rate, paused=paused)
         painter.flush()
         return self.surface
@@ -193,11 +200,11 @@ class Renderer:
     def _canvases(
         self, painter: Painter, panes: Sequence[Frame | None], told_apart: Sequence[Mark]
     ) -> tuple[list[pygame.Rect], list[pygame.Rect]]:
-        """Clear the canvases, title them if there are several; returns what is left for the grains, and for words below."""
+        """Clear the canvases, title them if there are several; returns what is left for the grains, and for words to each."""
         canvases = self.layout.canvases
         if len(canvases) == 1:
             painter.fill(canvases[0], self.theme.ground)
-            return [canvases[0]], [pygame.Rect(canvases[0].bottomleft, (0, 0))]
+            return [canvases[0]], []
         painter.fill(canvases[0].unionall(canvases[1:]), self.theme.hairline)  # shows in the seams
         bodies, feet, waiting = [], [], iter(told_apart)
         for canvas, frame in zip(canvases, panes, strict=True):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 from collections import OrderedDict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 
@@ -28,6 +28,8 @@ _FILES = {False: "SandboxSans-Regular.otf", True: "SandboxSans-SemiBold.otf"}
 _CACHE_SIZE = 512
 _FONTS = 64  # sizes that are kept, more than a window has at one scale
 FIRM = "\u00a0"  # a space at which no line breaks
+BETWEEN = "  ·  "  # texts that share a line
+_WHOLES = 64  # texts in boxes whose sizes are kept
 
 
 def font_path(bold: bool = False) -> Path:
@@ -108,6 +110,7 @@ class Type:
     def __init__(self, scale: float) -> None:
         self.scale = scale
         self._cache: OrderedDict[tuple[str, int, bool, int], pygame.Surface] = OrderedDict()
+        self._wholes: dict[object, tuple[float, list[str]]] = {}
 
     def pixels(self, size: float) -> int:
         """Font size in pixels of a size at scale 1; never below the smallest legible one."""
@@ -116,6 +119,10 @@ class Type:
     def height(self, size: float, bold: bool = False) -> int:
         """Height of a line [px]."""
         return _font(self.pixels(size), bold).get_height()
+
+    def leading(self, size: float) -> int:
+        """From a line to the next of a paragraph [px]: letters of some scripts rise above the height of a line."""
+        return self.height(size) + 1
 
     def width(self, text: str, size: float, bold: bool = False) -> int:
         """Width of a text [px]."""
@@ -166,7 +173,43 @@ class Type:
         return text[:kept].rstrip() + "…" if kept else ""
 
     def wrapped(self, text: str, size: float, width: float, bold: bool = False) -> list[str]:
-        """Lines no wider than the width, broken between words, but not within a unit."""
+        """Lines no wider than the width, broken between words, but not within a unit; what is wider by itself is shortened."""
+        parts = self._broken(text, size, width, bold)
+        return [self.shortened(part, size, width, bold) for part in parts]
+
+    def whole(
+        self, texts: Sequence[str], size: float, width: float, height: float
+    ) -> tuple[float, list[str]]:
+        """The largest size up to this one at which all of the texts stand in a box, and their lines there.
+
+        Each has lines of its own, or they follow one another with dots between where that takes less room. What does not fit at
+        the smallest legible size either ends with an ellipsis.
+        """
+        key = (tuple(texts), size, round(width), round(height))
+        if key not in self._wholes:
+            if len(self._wholes) >= _WHOLES:
+                self._wholes.clear()
+            self._wholes[key] = self._fitted(*key)
+        return self._wholes[key]
+
+    def _fitted(
+        self, texts: Sequence[str], size: float, width: float, height: float
+    ) -> tuple[float, list[str]]:
+        while True:
+            most = max(int(height // self.leading(size)), 1)
+            for parts in (texts, [BETWEEN.join(texts)]):
+                lines = [line for part in parts for line in self._broken(part, size, width, False)]
+                if len(lines) <= most and all(self.width(line, size) <= width for line in lines):
+                    return size, lines
+            if self.pixels(size) <= SMALL:
+                lines = [self.shortened(line, size, width) for line in lines]
+                if len(lines) > most:
+                    last = self.shortened(f"{lines[most - 1]} …", size, width)
+                    lines = [*lines[: most - 1], last]
+                return size, lines
+            size = (self.pixels(size) - 1) / self.scale
+
+    def _broken(self, text: str, size: float, width: float, bold: bool) -> list[str]:
         lines: list[str] = []
         line = ""
         for word in text.replace(" k R", f"{FIRM}k{FIRM}R").replace(" %", f"{FIRM}%").split(" "):
@@ -177,7 +220,7 @@ class Type:
             line = longer
         if line:
             lines.append(line)
-        return [self.shortened(part, size, width, bold) for part in lines]
+        return lines
 
     def render(self, text: str, size: float, colour: int, bold: bool = False) -> pygame.Surface:
         """The text as a picture with alpha."""

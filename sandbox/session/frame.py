@@ -163,6 +163,8 @@ class Frame:
     curve_label: str  # e.g. "force on the intruder [k R]"
 
     stroke_label: str = "stroke [R]"
+    # Where it happens, besides at the handles: xmin, ymin, xmax, ymax of each place.
+    focus: tuple[tuple[float, float, float, float], ...] = ()  # [R]
     # Strength of the hand [k R], where it has a limit and its force is what is plotted.
     hand_limit: float | None = None
 

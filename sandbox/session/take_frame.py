@@ -50,6 +50,7 @@ def take(run: Run, can_undo: bool, can_redo: bool, refusals: tuple[int, str]) ->
         bodies=tuple(_shape(body, box) for body in run.setup.world.bodies),
         handles=tuple(_handle_state(run, handle) for handle in run.setup.handles),
         bounds=run.setup.bounds,
+        focus=run.setup.focus,
         stroke=run.course.stroke,
         grains_out=run.course.out,
         energy=last.energy,

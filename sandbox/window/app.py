@@ -265,9 +265,9 @@ class App:
     def _draw_indicator(self) -> None:
         """On the screen only, so that it is not in the film."""
         renderer = self.stage.renderer
-        last, inset = renderer.bodies[-1], round(10 * renderer.scale)
-        corner = last.right - inset, last.top + inset
-        self.stage.recorder.draw(self.stage.screen, corner, renderer.theme, renderer.type)
+        said = renderer.layout.said
+        place = pygame.Rect(said.topleft, (renderer.end_of_words, said.height))
+        self.stage.recorder.draw(self.stage.screen, place, renderer.theme, renderer.type)
 
     def _show_cursor(self) -> None:
         wanted = pygame.SYSTEM_CURSOR_ARROW

@@ -15,7 +15,7 @@ import pygame.surfarray
 
 from core.errors import InputError
 from core.files import clear_beginning
-from sandbox.draw.text import BODY, Type
+from sandbox.draw.text import SMALL, Type
 from sandbox.draw.theme import Theme, channels
 from sandbox.record.video import VideoWriter
 from sandbox.window.export import free_stem
@@ -158,25 +158,22 @@ class Recorder:
         changed, self._second = second != self._second, second
         return changed
 
-    def draw(
-        self, screen: pygame.Surface, corner: tuple[int, int], theme: Theme, type_: Type
-    ) -> None:
-        """The indicator: a red disc and the time, its upper right corner there. It is not in the film."""
+    def draw(self, screen: pygame.Surface, place: pygame.Rect, theme: Theme, type_: Type) -> None:
+        """The indicator: a red disc and the time below it, in its place. It is not in the film."""
         if not self.recording or self._film is None:
             return
         minutes, seconds = divmod(int(time.perf_counter() - self._film.begun), 60)
-        text = type_.render(f"{minutes}:{seconds:02d}", BODY, theme.text, True)
-        radius = round(7 * type_.scale)
-        pad = round(8 * type_.scale)
-        plate = pygame.Rect(0, 0, text.get_width() + 2 * radius + 3 * pad, text.get_height() + pad)
-        plate.topright = corner
-        pygame.draw.rect(screen, channels(theme.panel), plate, border_radius=plate.height // 2)
+        size = type_.fitting("00:00", SMALL, place.width, True)
+        text = type_.render(f"{minutes}:{seconds:02d}", size, theme.text, True)
+        plate = place.inflate(-2, -2)
+        pygame.draw.rect(screen, channels(theme.panel), plate, border_radius=plate.width // 6)
         edge = max(round(1.5 * type_.scale), 1)
-        pygame.draw.rect(screen, channels(RED), plate, edge, border_radius=plate.height // 2)
-        pygame.draw.circle(
-            screen, channels(RED), (plate.left + pad + radius, plate.centery), radius
-        )
-        screen.blit(text, (plate.left + 2 * pad + 2 * radius, plate.top + pad // 2))
+        pygame.draw.rect(screen, channels(RED), plate, edge, border_radius=plate.width // 6)
+        free = plate.height - text.get_height()
+        radius = min(7 * type_.scale, 0.4 * free)
+        middle = plate.centerx, plate.top + round(0.5 * free + edge)
+        pygame.draw.circle(screen, channels(RED), middle, radius)
+        screen.blit(text, text.get_rect(midbottom=(plate.centerx, plate.bottom - edge)))
 
     def close(self) -> str:
         """Finish the film, if there is one; returns what to say."""

@@ -1,11 +1,10 @@
 """A guided tour or a lesson in the window: a card that asks, waits until it is done, and explains.
 
-It stands above the panel; where there is no panel, in the corner of the canvas where it covers no handle and the fewest grains.
+It stands above the panel, or where the panel would be: it covers nothing of what it speaks of.
 """
 
 from __future__ import annotations
 
-import numpy as np
 import pygame
 
 from core.errors import InputError
@@ -33,14 +32,10 @@ from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes.text import message
 
-WIDTH = 372.0  # of the card on the canvas at scale 1 [px]
+WIDTH = 352.0  # of the card where there is no panel, at scale 1 [px]
 MARGIN = 10.0  # round it, at scale 1 [px]
-WIDEST = 0.94  # of the canvas
-SHARE = 0.42  # of its width, unless letters would become smaller than at scale 1
 LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
-KNOB = 20.0  # room round a handle at scale 1 [px]
-HANDLE_COST = 10_000  # a covered handle counts as so many covered grains
-PLOT_COST = 1_000  # and a covered plot
+SMALLER = (2.5, 2.0, 1.75, 1.5, 1.25, 1.0, 0.875)  # scales of its letters where it would not fit
 
 
 class Guide(Silent):
@@ -57,8 +52,7 @@ class Guide(Silent):
         self._given: Given | None = None  # what was predicted in this step
         self._then: Moment | None = None  # what there was when the step began
         self._hover = ""
-        self._corner = 0
-        self._small: Type | None = None
+        self._fitted: tuple[object, Type] | None = None
         self._measured: tuple[object, CardLayout] | None = None
 
     @property
@@ -181,8 +175,9 @@ class Guide(Silent):
         self.stage.start(self.scene, step.settings, packings, self.lesson.seed)
 
     def tick(self, now: float) -> bool:
-        """Has it been done?"""
+        """Has it been done? And the card is to have its place."""
         del now
+        self.stage.arrange(card=self.wanted)
         if not self.on:
             return False
         run = self.stage.panes
@@ -340,53 +335,46 @@ class Guide(Silent):
         return " ".join(part for part in (*parts, str(step.why)) if part)
 
     @property
-    def docked(self) -> int:
-        """How much of the panel's height the card takes, margins included [px]; 0: it stands on the canvas."""
-        panel = self.stage.renderer.layout.panel
-        if not self.on or not panel.width:
+    def taken(self) -> int:
+        """How much of the panel's height the card takes, margins included [px]."""
+        layout = self.stage.renderer.layout
+        if not self.on or not layout.panel.width:
             return 0
-        margin = self._margin
-        tall = self._layout(panel.width - 2 * margin).height + 2 * margin
-        return tall if panel.height - tall >= LEAST_PANEL * self.stage.renderer.scale else 0
+        return self.rect.height + 2 * self._margin
 
     @property
     def rect(self) -> pygame.Rect:
         """Where the card is in the window [px]."""
-        layout, margin = self.stage.renderer.layout, self._margin
-        if tall := self.docked:
-            panel = layout.panel
-            return pygame.Rect(
-                panel.left + margin, panel.top + margin, panel.width - 2 * margin, tall - 2 * margin
-            )
-        canvas = layout.canvases[0].unionall(list(layout.canvases))
-        width = min(round(WIDTH * self._type.scale), round(WIDEST * canvas.width))
-        card = pygame.Rect(0, 0, width, self._layout(width).height)
-        room = canvas.inflate(-2 * margin, -2 * margin)
-        lower = pygame.Rect(room.left, 0, room.width, layout.status.top - margin)  # over the plot
-        corners = [card.copy() for _ in range(6)]
-        corners[0].topright, corners[1].topleft = room.topright, room.topleft
-        corners[2].bottomright, corners[3].bottomleft = room.bottomright, room.bottomleft
-        corners[4].bottomright, corners[5].bottomleft = lower.bottomright, lower.bottomleft
-        costs = [self._covered(corner) for corner in corners]
-        for index, corner in enumerate(corners):
-            costs[index] += 0 if room.contains(corner) else PLOT_COST
-        if costs[self._corner] >= HANDLE_COST or self._then is None:
-            self._corner = costs.index(min(costs))
-        return corners[self._corner]
+        column, margin = self._column, self._margin
+        width = max(column.width - 2 * margin, 1)
+        height = min(self._layout(width).height, column.height - 2 * margin)
+        return pygame.Rect(column.left + margin, column.top + margin, width, max(height, 1))
+
+    @property
+    def _column(self) -> pygame.Rect:
+        """At the top of the panel, or in a column of its own in the panel's stead: it covers nothing of the canvases."""
+        layout = self.stage.renderer.layout
+        return layout.panel if layout.panel.width else layout.card
+
+    @property
+    def wanted(self) -> int:
+        """How wide a column the card is to have where there is no panel [px]."""
+        return round((WIDTH + 2.0 * MARGIN) * self.stage.renderer.scale) if self.on else 0
 
     @property
     def _type(self) -> Type:
-        """The type on the card: smaller than elsewhere where the card would hide the canvas."""
-        layout, type_ = self.stage.renderer.layout, self.stage.renderer.type
-        if layout.panel.width:
-            return type_
-        canvas = layout.canvases[-1].right - layout.canvases[0].left
-        scale = min(type_.scale, max(SHARE * canvas / WIDTH, 1.0))
-        if scale == type_.scale:
-            return type_
-        if self._small is None or self._small.scale != scale:
-            self._small = Type(scale)
-        return self._small
+        """The type on the card: smaller than elsewhere where it would not fit, or leave nothing of the panel."""
+        own, column = self.stage.renderer.type, self._column
+        least = LEAST_PANEL * own.scale if self.stage.renderer.layout.panel.width else 0.0
+        key = (self.page, column.size, own)
+        if self._fitted is None or self._fitted[0] != key:
+            width, height = column.width - 2 * self._margin, column.height - 2 * self._margin
+            types = [own, *(Type(scale) for scale in SMALLER if scale < own.scale)]
+            fitting = (
+                t for t in types if card_layout(self.page, t, width).height <= height - least
+            )
+            self._fitted = key, next(fitting, types[-1])
+        return self._fitted[1]
 
     @property
     def _margin(self) -> int:
@@ -399,19 +387,6 @@ class Guide(Silent):
         if self._measured is None or self._measured[0] != key:
             self._measured = key, card_layout(page, type_, width)
         return self._measured[1]
-
-    def _covered(self, rect: pygame.Rect) -> int:
-        """What a card there would cover: grains, and handles for very many."""
-        cost, scale = 0, self.stage.renderer.scale
-        for frame, camera, _ in self.stage.picture.panes():
-            left, bottom = camera.to_world(rect.left, rect.bottom)
-            right, top = camera.to_world(rect.right, rect.top)
-            beside = (frame.x > left) & (frame.x < right)
-            cost += int(np.count_nonzero(beside & (frame.y > bottom) & (frame.y < top)))
-            near = rect.inflate(2 * KNOB * scale, 2 * KNOB * scale)
-            for handle in frame.handles:
-                cost += HANDLE_COST * near.collidepoint(camera.to_screen(handle.x, handle.y))
-        return cost
 
     def draw(self, painter: Painter) -> None:
         """The card."""

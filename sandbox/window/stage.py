@@ -59,6 +59,7 @@ class Stage:
         self.focus = Focus(handle)
         self.focus.busy = lambda: any(frame.busy for frame, _, _ in self.picture.panes())
         self._forget: list[Callable[[], None]] = []
+        self._arranged = (False, 0)  # is there to be a panel, and how wide a card in its stead [px]
         self.arrange(panel=True)
 
     def at_new_scene(self, forget: Callable[[], None]) -> None:
@@ -113,10 +114,16 @@ class Stage:
             self.toast(words.say(message(error)))
         self.dirty = True
 
-    def arrange(self, *, panel: bool) -> None:
-        """Divide the window anew, with a place for the panel or without."""
-        self.renderer.arrange(panel=panel, timeline=True)
-        self.dirty = True
+    def arrange(self, *, panel: bool | None = None, card: int | None = None) -> None:
+        """Divide the window anew if that has changed: is there to be a panel, and how wide a card where there is none [px]?"""
+        wanted = (
+            self._arranged[0] if panel is None else panel,
+            self._arranged[1] if card is None else card,
+        )
+        if wanted != self._arranged:
+            self._arranged = wanted
+            self.renderer.arrange(panel=wanted[0], timeline=True, card=wanted[1])
+            self.dirty = True
 
     def redraw(self, changed: bool) -> None:
         """Draw the next picture if something has changed."""

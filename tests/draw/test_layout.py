@@ -61,11 +61,12 @@ CHIPS = tuple(
     panes=st.integers(1, 3),
     panel=st.booleans(),
     timeline=st.booleans(),
+    card=st.integers(0, 1200),
 )
 def test_layout_fills_the_window_without_overlap(
-    size: tuple[int, int], scale: float, panes: int, panel: bool, timeline: bool
+    size: tuple[int, int], scale: float, panes: int, panel: bool, timeline: bool, card: int
 ) -> None:
-    places = layout(size, scale, panes=panes, panel=panel, timeline=timeline)
+    places = layout(size, scale, panes=panes, panel=panel, timeline=timeline, card=card)
     assert len(places.canvases) == panes
     window = pygame.Rect((0, 0), size)
     for rect in places.rects():
@@ -74,7 +75,8 @@ def test_layout_fills_the_window_without_overlap(
         assert not first.colliderect(second)
     seams = (panes - 1) * round(SEAM * scale) * places.canvas.height
     assert sum(rect.width * rect.height for rect in places.rects()) + seams == size[0] * size[1]
-    assert places.canvas.height >= 0.4 * size[1]
+    assert places.canvas.height >= 0.33 * size[1]
+    assert not (places.panel.width and places.card.width)
     assert sum(rect.width for rect in places.canvases) >= 0.5 * size[0]
     assert places.status.height > 0
 

@@ -171,14 +171,20 @@ def test_hand_that_runs_ahead_is_shown() -> None:
     handle = replace(frame.handles[0], target=None)
     frame = replace(frame, handles=(handle,))
     renderer = Renderer((1280, 720), chains=False)
-    still = canvas_of(renderer, frame).copy()
     target = (handle.x + 4.0, handle.y)
     renderer.draw(frame, hand=Hand(held="intruder", target=target))
     middle = renderer.camera.to_screen(handle.x + 2.0, handle.y)
     row = renderer.surface.subsurface((int(middle[0]), int(middle[1]) - 3, 1, 6))
     seen = {tuple(row.get_at((0, k)))[:3] for k in range(6)}
     assert channels(HAND) in seen
-    assert not np.array_equal(still, canvas_of(renderer, replace(frame, notices=("x",))))
+
+
+def test_what_is_said_leaves_the_canvas_as_it_is() -> None:
+    frame, renderer = silent(intruder_frame(8)), Renderer((1280, 720))
+    still, whole = canvas_of(renderer, frame).copy(), renderer.image(frame)
+    told = replace(frame, notices=("clogged: nothing left",) * 3)
+    assert np.array_equal(still, canvas_of(renderer, told))
+    assert not np.array_equal(whole, renderer.image(told))
 
 
 def test_resize_and_theme_need_no_new_renderer() -> None:

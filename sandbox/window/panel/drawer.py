@@ -8,7 +8,6 @@ from sandbox.draw.layout import PANEL
 from sandbox.window.guide import Guide
 from sandbox.window.stage import Stage
 
-TAB = 36.0, 64.0  # width and height at scale 1 [px]
 WIDEST = 0.92  # of the window's width, for a panel that lies over the canvas
 
 
@@ -25,7 +24,7 @@ class Drawer:
         """Where it is in the window [px]; of no width when it is not to be seen."""
         own = self.stage.renderer.layout.panel
         if own.width or not self.over:
-            taken = self.guide.docked  # the card of a tour stands above it
+            taken = self.guide.taken  # the card of a tour stands above it
             return pygame.Rect(own.left, own.top + taken, own.width, own.height - taken)
         width, _ = self.stage.renderer.size
         wide = round(min(PANEL * self.stage.renderer.scale, WIDEST * width))
@@ -33,11 +32,9 @@ class Drawer:
 
     @property
     def tab(self) -> pygame.Rect:
-        """What opens it by mouse or finger when it is not to be seen, at the right of the canvas [px]."""
-        scale, canvas = self.stage.renderer.scale, self.stage.renderer.layout.canvases[-1]
-        tab = pygame.Rect(0, 0, round(TAB[0] * scale), round(TAB[1] * scale))
-        tab.midright = canvas.midright
-        return tab
+        """What opens it by mouse or finger when it is not to be seen, at the right of the words under the canvases [px]."""
+        said, wide = self.stage.renderer.layout.said, self.stage.renderer.end_of_words
+        return pygame.Rect(said.right - wide, said.top, wide, said.height)
 
     @property
     def shown(self) -> bool:
