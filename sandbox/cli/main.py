@@ -141,12 +141,22 @@ def _add_play(command: Command) -> None:
         metavar="FILE.csv",
         help="what is predicted in lessons, a row each, added to what is there; no names",
     )
-    _add_size(play)
+    _add_size(play, None, "by the screen's size")
+    play.add_argument(
+        "--display",
+        type=argument(arguments.whole_number(1, 16)),
+        default=1,
+        metavar="N",
+        help="which screen the window is on, counted from 1 (default: 1)",
+    )
+    play.add_argument(
+        "--fullscreen", action="store_true", help="take all of the screen, as F11 does"
+    )
     play.add_argument(
         "--scale",
         type=argument(arguments.number(0.5, 4.0)),
         metavar="FACTOR",
-        help="size of letters and controls, 0.5 to 4 (default: by the screen's size)",
+        help="size of letters and controls, 0.5 to 4 (default: by the size of screen and window)",
     )
     _add_look(play, "that of this computer, if there is a choice")
 
@@ -338,13 +348,15 @@ def _add_compare(parser: Parser) -> None:
     )
 
 
-def _add_size(parser: Parser) -> None:
+def _add_size(
+    parser: Parser, default: tuple[int, int] | None = (1280, 720), said: str = "1280x720"
+) -> None:
     parser.add_argument(
         "--size",
         type=argument(arguments.size),
-        default=(1280, 720),
+        default=default,
         metavar="WxH",
-        help="in pixels (default: 1280x720)",
+        help=f"in pixels (default: {said})",
     )
 
 

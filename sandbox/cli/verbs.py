@@ -89,7 +89,14 @@ def play(options: argparse.Namespace) -> int:
         script=_row(options.scene) is not None,
         lesson=lesson,
         answers=answers,
-        looks=Looks(options.size, options.scale, options.theme, options.view),
+        looks=Looks(
+            options.size,
+            options.scale,
+            options.theme,
+            options.view,
+            options.display,
+            options.fullscreen,
+        ),
     )
 
 

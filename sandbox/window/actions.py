@@ -10,7 +10,7 @@ from core.errors import InputError
 from sandbox.draw.views import view_after
 from sandbox.files.scene_file import SUFFIX
 from sandbox.session.commands import Change, Protocol
-from sandbox.window.display import save_picture
+from sandbox.window.display import SCALES, save_picture, switch_fullscreen
 from sandbox.window.export import free_stem
 from sandbox.window.keys import PACKING_ACTIONS, Action, packing_for
 from sandbox.window.menu import Choice
@@ -36,8 +36,6 @@ HIDES = {
     Action.EXPORT: "export",
     Action.SAVE: "files",
 }
-SCALES = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0)
-
 
 class Actions:
     """All that can be asked for, under a page or not."""
@@ -61,6 +59,8 @@ class Actions:
             self.stage.renderer.set_theme(
                 "light" if self.stage.renderer.theme.name == "dark" else "dark"
             )
+        elif action is Action.FULLSCREEN:
+            switch_fullscreen()
         elif action is Action.SOUND:
             self._switch_sound()
         elif action is Action.TONE:

@@ -294,6 +294,8 @@ class App:
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):
             stage.screen = pygame.display.get_surface() or stage.screen
             stage.renderer.resize(stage.screen.get_size())
+        elif event.type == pygame.KEYDOWN and action_of(event) is Action.FULLSCREEN:
+            self._act(Action.FULLSCREEN)  # wherever the keyboard is
         elif any(part.handle(event) for part in stage.parts_now()) or self.pages.handle(event):
             pass
         elif event.type == pygame.KEYDOWN:

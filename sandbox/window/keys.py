@@ -56,6 +56,7 @@ class Action(enum.Enum):
     SAVE = enum.auto()
     EXPLORE = enum.auto()
     MEASURE = enum.auto()
+    FULLSCREEN = enum.auto()
 
 
 PACKING_ACTIONS = (Action.PACKING_1, Action.PACKING_2, Action.PACKING_3)
@@ -103,6 +104,7 @@ _SIGNS = {
 
 _KEYS = {
     pygame.K_F1: Action.HELP,
+    pygame.K_F11: Action.FULLSCREEN,
     pygame.K_F12: Action.SCREENSHOT,
     pygame.K_ESCAPE: Action.BACK,
     pygame.K_RETURN: Action.ENTER,
@@ -122,6 +124,8 @@ _BRACKETS = ("[", "]")
 
 def action_of(event: pygame.event.Event) -> Action | None:
     """What a KEYDOWN event asks for, if anything."""
+    if _asks_for_the_screen(event):
+        return Action.FULLSCREEN
     if event.key in _KEYS:
         return _KEYS[event.key]
     mod, letter = getattr(event, "mod", 0), letter_of(event)
@@ -134,6 +138,16 @@ def action_of(event: pygame.event.Event) -> Action | None:
         return _SIGNS[written] if written in _BRACKETS else None
     sign = sign_of(event)
     return _SIGNS.get(sign) or _SIGNS.get(sign.lower())
+
+
+def _asks_for_the_screen(event: pygame.event.Event) -> bool:
+    """Alt and Enter, as in other programs; AltGr, which may come as Ctrl and Alt, is no Alt."""
+    held = getattr(event, "mod", 0) & (pygame.KMOD_ALT | pygame.KMOD_CTRL)
+    return (
+        event.key == pygame.K_RETURN
+        and bool(held & pygame.KMOD_LALT)
+        and held & pygame.KMOD_CTRL == 0
+    )
 
 
 def packing_for(action: Action, packings: Sequence[str], current: str) -> str | None:

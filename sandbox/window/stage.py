@@ -14,7 +14,7 @@ from sandbox.files import preferences
 from sandbox.files.autosave import Leftover
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command
-from sandbox.window.display import Looks, natural_scale, open_display
+from sandbox.window.display import Looks, open_display
 from sandbox.window.film import Recorder
 from sandbox.window.focus import Focus
 from sandbox.window.hand import Mouse
@@ -45,8 +45,7 @@ class Stage:
         self.parts: list[Part] = []  # while a scene runs they see events first, in this order
         self.mouse = Mouse()
         self.notices = Notices()
-        self.screen = open_display(looks.size)
-        scale = looks.scale or natural_scale()
+        self.screen, scale = open_display(looks)
         self.renderer = Renderer(self.screen.get_size(), scale, looks.theme, looks.view)
         self.picture = Picture(panes, self.renderer)
         self.recorder = Recorder()

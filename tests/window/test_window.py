@@ -17,6 +17,7 @@ from sandbox.files.log_file import read_log
 from sandbox.files.scene_file import write_scene
 from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset
 from sandbox.window import display
+from sandbox.window.display import Looks
 from sandbox.words import language, words
 from scenes import registry
 from tests.session.test_editing import built
@@ -413,7 +414,7 @@ def test_no_display_is_one_plain_line(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
     with pytest.raises(InputError, match="no display") as caught:
-        display.open_display((800, 600))
+        display.open_display(Looks((800, 600)))
     assert "record" in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -424,11 +425,11 @@ def test_display_that_cannot_be_opened_is_an_input_error(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(pygame.display, "set_mode", broken)
     with pytest.raises(InputError, match="x11 not available"):
-        display.open_display((800, 600))
+        display.open_display(Looks((800, 600)))
 
 
 def test_window_is_not_larger_than_the_screen() -> None:
-    screen = display.open_display((100_000, 100))
+    screen, _ = display.open_display(Looks((100_000, 100)))
     desktop = pygame.display.get_desktop_sizes()[0]
     assert screen.get_width() <= max(desktop[0], display.SMALLEST[0])
     assert screen.get_height() == display.SMALLEST[1]

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Switch
+from sandbox.window.display import SCALES, is_fullscreen
 from sandbox.window.keys import Action
 from sandbox.window.sections import StageSection, Value
 from sandbox.words import language, words
-
-SCALES = ("1", "1.25", "1.5", "2", "2.5", "3")
 
 
 class LooksSection(StageSection):
@@ -22,7 +21,8 @@ class LooksSection(StageSection):
         renderer = self.stage.renderer
         themes = tuple(Option(name, words.THEMES[name]) for name in ("dark", "light"))
         sizes = tuple(
-            Option(size, size.replace(".", words.decimal_sign()) + " ×") for size in SCALES
+            Option(size, size.replace(".", words.decimal_sign()) + " ×")
+            for size in (f"{scale:g}" for scale in SCALES)
         )
         spoken = tuple(
             Option(code, str(language.table(code)["name"])) for code in language.available()
@@ -32,6 +32,12 @@ class LooksSection(StageSection):
             Switch("looks/chains", words.LOOK_CHAINS, chains, help=words.LOOK_CHAINS_HELP),
             Choice("looks/theme", words.LOOK_THEME, themes, renderer.theme.name),
             Choice("looks/size", words.LOOK_SIZE, sizes, f"{renderer.scale:g}"),
+            Switch(
+                "looks/fullscreen",
+                words.LOOK_FULLSCREEN,
+                is_fullscreen(),
+                help=words.LOOK_FULLSCREEN_HELP,
+            ),
             Choice("looks/language", words.LOOK_LANGUAGE, spoken, language.present()),
             Switch(
                 "looks/sound", words.LOOK_SOUND, self.stage.sound.on, help=words.LOOK_SOUND_HELP
@@ -47,6 +53,8 @@ class LooksSection(StageSection):
         """Change it."""
         del done
         match name.partition("/")[2]:
+            case "fullscreen":
+                self.actions.act(Action.FULLSCREEN)
             case "chains":
                 self.actions.act(Action.CHAINS)
             case "sound":
