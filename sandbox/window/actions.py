@@ -37,6 +37,7 @@ HIDES = {
     Action.SAVE: "files",
 }
 
+
 class Actions:
     """All that can be asked for, under a page or not."""
 
