@@ -420,7 +420,9 @@ def test_hand_comes_before_the_brush(desk: Desk) -> None:
     desk.key(pygame.K_b)
     desk.press(desk.handle_place())
     assert desk.app.stage.mouse.holding
-    desk.release(desk.handle_place())
+    x, y = desk.handle_place()
+    desk.point((x + 40, y), pressed=True)
+    desk.release((x + 40, y))
     desk.until(lambda: Release("intruder") in sent(desk))
     assert not any(isinstance(command, Place) for command in sent(desk))
 

@@ -420,7 +420,7 @@ def test_no_display_is_one_plain_line(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_display_that_cannot_be_opened_is_an_input_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise pygame.error("x11 not available")
 
     monkeypatch.setattr(pygame.display, "set_mode", broken)
