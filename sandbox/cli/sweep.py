@@ -94,13 +94,12 @@ def add_options(sweep: argparse.ArgumentParser) -> None:
 
 def sweep(options: argparse.Namespace) -> int:
     """Carry a sweep out, or go on with one, and print what it came to."""
-    from sandbox.extras import require_matplotlib, require_scipy
+    from sandbox.extras import require_matplotlib
     from sandbox.sweep import export, workers
     from sandbox.sweep.tables import is_sweep
 
     folder, request = _asked(options)
     workers.check(options.executor)
-    require_scipy()
     if options.parquet:
         export.require_pyarrow()
     if options.pictures or options.players:

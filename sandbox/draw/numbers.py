@@ -53,6 +53,11 @@ def number(value: float, decimals: int) -> str:
     return text.replace("-", MINUS).replace(".", decimal_sign())
 
 
+def short_number(value: float, digits: int = 4) -> str:
+    """A number in no more digits than it has, as the present language writes it."""
+    return f"{value:.{digits}g}".replace("-", MINUS).replace(".", decimal_sign())
+
+
 def percent(share: float, steps: tuple[float, ...] = ONE_TWO_FIVE) -> str:
     """An upper bound in words: 0.008 -> '1 %', 0.0004 -> '0.05 %'."""
     bound = 100.0 * nice_ceiling(share, steps)

@@ -94,12 +94,15 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
     frame, several = frames[0], len(frames) > 1
     packing = words.PACKINGS.get(frame.packing, frame.packing)
     if several:
-        packing = words.SIDE_BY_SIDE.format(count=len(frames))
+        kinds = {each.packing for each in frames}
+        side = words.SIDE_BY_SIDE if len(kinds) == len(frames) else words.RUNS_SIDE_BY_SIDE
+        packing = side.format(count=len(frames))
     increment = max(frame.increment for frame in frames)
+    one_seed = all(each.seed == frame.seed for each in frames)
     items = [
         _Item(words.title(frame.scene) or frame.scene.replace("_", " "), 2),
         _Item(packing, 4),
-        _Item(words.SEED.format(seed=frame.seed), 1),
+        *([_Item(words.SEED.format(seed=frame.seed), 1)] if one_seed else []),
         _Item(
             words.INCREMENT.format(increment=increment), 3, words.INCREMENT.format(increment="000")
         ),

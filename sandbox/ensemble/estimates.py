@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import Protocol
 
 import numpy as np
@@ -173,11 +174,14 @@ class Share:
         return self.hits / self.count
 
     def interval(self, confidence: float = CONFIDENCE) -> tuple[float, float]:
-        """Wilson's (1927, doi:10.1080/01621459.1927.10502953)."""
-        from scipy.stats import binomtest
-
-        found = binomtest(self.hits, self.count).proportion_ci(confidence, method="wilson")
-        return float(found.low), float(found.high)
+        """Wilson's (1927, doi:10.1080/01621459.1927.10502953), in closed form."""
+        z = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
+        p, n = self.value, self.count
+        middle = p + 0.5 * z * z / n
+        half = z * math.sqrt(p * (1.0 - p) / n + 0.25 * (z / n) ** 2)
+        whole = 1.0 + z * z / n
+        low = 0.0 if self.hits == 0 else (middle - half) / whole
+        return low, 1.0 if self.hits == n else (middle + half) / whole
 
     def p_above(self, bound: float) -> float:
         """Exact binomial test."""

@@ -147,6 +147,11 @@ class Watch:
 
 def carry_out(job: Job) -> Found:
     """A run, in a process of a pool or anywhere else. Raises InputError for what cannot be built, or Stopped."""
+    return carried_out(job)[0]
+
+
+def carried_out(job: Job) -> tuple[Found, Session]:
+    """The same, and the session as it has ended."""
 
     def check(*_: object) -> None:
         if stopping():
@@ -155,7 +160,7 @@ def carry_out(job: Job) -> Found:
     began = clock()
     session = Session(job.scene, job.packing, job.seed, job.settings)
     watch = drive(session, job, check)
-    return described(job, watch, round(clock() - began, 3))
+    return described(job, watch, round(clock() - began, 3)), session
 
 
 def drive(session: Session, job: Job, check: Callable[..., None] = lambda *_: None) -> Watch:

@@ -88,12 +88,15 @@ class Request:
             seed, place = divmod(row - 1, len(one))
             yield self._job(row, self.seeds[0] + seed, *one[place])
 
+    def place(self, row: int) -> tuple[int, int]:
+        """Which packing and which cell a row is of, counted from 0."""
+        return divmod((row - 1) % self._a_seed, self._a_seed // len(self.packings))
+
     def job(self, row: int) -> Job:
         """The run of one row. Raises InputError if there is none."""
         if not 1 <= row <= self.runs:
             raise InputError(f"there is no row {row}: use 1 to {self.runs}")
-        seed, place = divmod(row - 1, self._a_seed)
-        packing, cell = divmod(place, self._a_seed // len(self.packings))
+        seed, (packing, cell) = (row - 1) // self._a_seed, self.place(row)
         settings = registry.get(self.scene).settings({**dict(self.settings), **self.cells[cell]})
         return self._job(row, self.seeds[0] + seed, self.packings[packing], settings)
 

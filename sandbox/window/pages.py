@@ -84,8 +84,11 @@ class Pages:
         if self.stage.show_help:
             self.stage.show_help = event.type != pygame.MOUSEBUTTONDOWN
         elif self.stage.show_explore:
-            if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
-                self.explore.click(event.pos)
+            if event.type == pygame.MOUSEMOTION:
+                self.explore.hover(event.pos)
+            elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
+                beside = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
+                self.explore.click(event.pos, beside=beside)
         elif self.stage.show_menu and event.type == pygame.MOUSEMOTION:
             self.menu.hover(event.pos)
         elif self.stage.show_menu and event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
@@ -96,6 +99,9 @@ class Pages:
         """Tab in the menu, and the wheel; True if the event was that."""
         stage = self.stage
         if stage.show_explore and not stage.show_help:
+            if event.type == pygame.KEYDOWN and event.key == pygame.K_TAB:
+                self.explore.tab()
+                return True
             return False
         if stage.show_menu and not stage.show_help and self.menu.handle(event):
             return True

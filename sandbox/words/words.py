@@ -21,6 +21,7 @@ __all__ = [
     "LENGTH_UNIT",
     "MEASURES",
     "MEASURES_HELP",
+    "OUTCOMES",
     "PACKINGS",
     "PERCENT",
     "SECTIONS",
@@ -61,6 +62,7 @@ KINDS = Section("kinds")
 MEASURES = Section("measures")
 MEASURES_HELP = Section("measures_help")
 KINDS_SHORT = Section("kinds_short")
+OUTCOMES = Section("outcomes")
 PACKINGS = Section("packings")
 SECTIONS = Section("sections")
 STOPPED = Section("stopped")

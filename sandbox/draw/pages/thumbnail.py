@@ -1,6 +1,6 @@
-"""Small pictures of scenes for the menu: drawn from Frames, and found again as files.
+"""Small pictures of Frames; those of scenes for the menu are found again as files.
 
-They are made by ``.ci/make_thumbnails.py`` and lie beside this module in an installed program, in assets/ in the repository.
+These are made by ``.ci/make_thumbnails.py`` and lie beside this module in an installed program, in assets/ in the repository.
 """
 
 from __future__ import annotations
@@ -27,13 +27,15 @@ LEAST_CHAIN = 0.02  # the top of the force scale is never below this [k R]
 KEPT = 64  # pictures that are held ready at one size
 
 
-def drawn(frame: Frame, theme: str) -> pygame.Surface:
-    """A picture of a frame, ``SIDE`` pixels high and wide."""
-    surface = pygame.Surface((SIDE, SIDE), 0, 32)
+def drawn(
+    frame: Frame, theme: str, size: tuple[int, int] = (SIDE, SIDE), margin: float = MARGIN
+) -> pygame.Surface:
+    """A picture of a frame, of that width and height, with a margin round the scene [px]."""
+    surface = pygame.Surface(size, 0, 32)
     painter = Painter(surface, theme_named(theme), Type(1.0))
     rect = surface.get_rect()
     painter.fill(rect, painter.theme.ground)
-    camera = Camera.fit(frame.bounds, rect, MARGIN)
+    camera = Camera.fit(frame.bounds, rect, margin)
     draw_grains(painter, rect, camera, frame, Look(view_named("kind"), True))
     draw_bodies(painter, rect, camera, frame)
     top = max(typical_largest(frame.contacts.force), LEAST_CHAIN)

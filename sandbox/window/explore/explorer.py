@@ -6,18 +6,20 @@ import logging
 import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from core.errors import InputError
 from sandbox.draw.pages.explore_page import MapCell
 from sandbox.ensemble.batch import Batch, carry_out_all
 from sandbox.ensemble.pool import Pool
-from sandbox.extras import require_scipy
-from sandbox.sweep.outcome import Found, carry_out
+from sandbox.session.frame import Frame
+from sandbox.sweep.outcome import Found, carried_out
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.summary import Cell, cells
 from sandbox.sweep.tables import Tables
@@ -30,12 +32,18 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Progress:
-    """What the window may know of it at one moment."""
+    """What the window may know of it at one moment. ``frames``: how runs ended, by their rows."""
 
     cells: tuple[MapCell, ...] = ()
     done: int = 0
     error: str = ""
     at_work: bool = False
+    frames: Mapping[int, Frame] = field(default_factory=dict)
+
+    @property
+    def unseen(self) -> bool:
+        """Is there a cell whose run nobody knows the end of?"""
+        return any(cell.row not in self.frames for cell in self.cells)
 
 
 class Explorer:
@@ -43,6 +51,7 @@ class Explorer:
 
     def __init__(self) -> None:
         self.progress = Progress()
+        self.pictures = False  # are the ends of runs wanted that were carried out before?
         self._gate: _Gate | None = None
         self._thread: threading.Thread | None = None
 
@@ -51,7 +60,7 @@ class Explorer:
         self.stop()
         before = self._thread
         self._gate = gate = _Gate()
-        self.progress = Progress(at_work=True)
+        self.progress = replace(self.progress, error="", at_work=True)
         self._thread = threading.Thread(
             target=self._run, args=(request, folder, gate, before), name="explorer", daemon=True
         )
@@ -76,7 +85,6 @@ class Explorer:
             before.join()  # it may be at work on the same folder
         error = ""
         try:
-            require_scipy()
             tables = Tables(folder, request)
             try:
                 self._carry_out(tables, gate)
@@ -89,33 +97,42 @@ class Explorer:
             log.exception("the explorer stopped")
             error = f"{type(trouble).__name__}: {trouble}"
         if self._gate is gate:  # nothing else has begun meanwhile
-            now = self.progress
-            self.progress = Progress(now.cells, now.done, error)
+            self.progress = replace(self.progress, error=error, at_work=False)
 
     def _carry_out(self, tables: Tables, gate: _Gate) -> None:
+        ends = Ends(dict(self.progress.frames))
+
         def tell() -> None:
             if self._gate is gate:
                 found = tuple(map(shown, cells(tables)))
-                self.progress = Progress(found, len(tables.runs), at_work=True)
+                self.progress = Progress(found, len(tables.runs), "", True, dict(ends.frames))
 
         due = 0.0
 
-        def done(_: Job, found: Found) -> None:
+        def done(job: Job, ended: tuple[Found, Frame]) -> None:
             nonlocal due
-            tables.add(found)
+            found, frame = ended
+            if job.row not in tables.runs:
+                tables.add(found)
+            ends.keep(job.row, (*tables.request.place(job.row), str(found.run["outcome"])), frame)
             if time.monotonic() >= due:
                 tell()
                 due = time.monotonic() + EVERY
 
         tell()
         missing = [job for job in tables.request.jobs() if job.row not in tables.runs]
-        # A run that fails leaves its cell with fewer; it is tried again when the folder is gone on with.
-        batch = Batch(carry_out_gently, missing, done, lambda _job, _reason: None)
         jobs = max(cores() - 1, 1)
         try:
             with Pool(jobs) as pool:
                 gate.open(pool)
+                # A run that fails leaves its cell with fewer; it is tried again when the folder is gone on with.
+                batch = Batch(carry_out_gently, missing, done, lambda _job, _reason: None)
                 carry_out_all(batch, gate, jobs, len(tables.runs))
+                tell()
+                if self.pictures:
+                    rows = [c.row for c in self.progress.cells if c.row not in ends.frames]
+                    again = [tables.request.job(row) for row in rows]
+                    carry_out_all(replace(batch, runs=again), gate, jobs)
         except KeyboardInterrupt:
             pass  # it was closed
         tell()
@@ -145,21 +162,46 @@ class _Gate:
         return self._pool.submit(function, *arguments)
 
 
-def carry_out_gently(job: Job) -> Found:
-    """A run in a process that lets all others go first."""
+class Ends:
+    """How runs ended: of each cell and outcome the run with the least row, which is the one that a map opens."""
+
+    def __init__(self, frames: dict[int, Frame]) -> None:
+        self.frames = frames
+        self._rows: dict[tuple[object, ...], int] = {}
+
+    def keep(self, row: int, sort: tuple[object, ...], frame: Frame) -> None:
+        """The end of a run; ``sort``: its cell and outcome."""
+        before = self._rows.get(sort)
+        if before is not None and before < row:
+            return
+        if before is not None:
+            self.frames.pop(before, None)
+        self.frames[row], self._rows[sort] = frame, row
+
+
+def carry_out_gently(job: Job) -> tuple[Found, Frame]:
+    """A run in a process that lets all others go first, and how it ended."""
     if hasattr(os, "nice"):
         os.nice(max(NICENESS - os.nice(0), 0))
-    return carry_out(job)
+    found, session = carried_out(job)
+    return found, bare(session.frame())
+
+
+def bare(frame: Frame) -> Frame:
+    """A frame with no more than a small picture shows."""
+    none = np.empty(0)
+    return replace(frame, notices=(), events=(), settings={}, curve_stroke=none, curve_force=none)
 
 
 def shown(cell: Cell) -> MapCell:
     """What the map shows of a cell."""
     share = cell.stopped
-    low, high = (0.0, 1.0) if share is None else share.interval()
     return MapCell(
         cell.values,
         None if share is None else share.value,
-        high - low,
+        (0.0, 1.0) if share is None else share.interval(),
+        0 if share is None else share.count,
         len(cell.runs),
         int(cell.example["row"]),
+        str(cell.example["outcome"]),
     )

@@ -1,18 +1,21 @@
-"""Explore as a person uses it: two parameters, their ranges, how many runs a cell; the map fills, a click opens a run."""
+"""Explore as a person uses it: two parameters, ranges, runs a cell; the map fills, a click opens a run, or puts it beside one."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from core.errors import InputError
-from sandbox.draw.pages.explore_page import ExplorePlaces, Line, Shown, draw_explore
+from sandbox.draw.numbers import short_number
+from sandbox.draw.pages.explore_page import ExplorePlaces, Line, MapCell, Shown, draw_explore
 from sandbox.draw.painter import Painter
 from sandbox.session.commands import Protocol
 from sandbox.sweep.request import Axis, Job, Request, check
-from sandbox.window.explore.explorer import Explorer
+from sandbox.window.explore.ends import Ends
+from sandbox.window.explore.explorer import Explorer, Progress
 from sandbox.window.explore.side import Side
 from sandbox.window.keys import Action
+from sandbox.window.solvers.panes import Wanted
 from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes import registry
@@ -21,7 +24,14 @@ from scenes.text import message
 
 FAVOURITES = ("orifice", "auxetic_fraction", "friction", "hand_strength")
 MOST_VALUES, MOST_SEEDS = 12, 200
-BUTTON = "go"
+BUTTON, SHOW = "go", "show"
+MAP = "map"  # chosen: arrows go from cell to cell
+ARROWS = {
+    Action.LEFT: (-1, 0),
+    Action.RIGHT: (1, 0),
+    Action.UP: (0, 1),
+    Action.DOWN: (0, -1),
+}
 STILL = "shake"  # of a scene that is shaken now and then: here it ends with its first clog
 
 
@@ -40,6 +50,9 @@ class ExplorePage:
         self._said = ""
         self._places = ExplorePlaces()
         self._seen = self.explorer.progress
+        self._ends = Ends()
+        self._pointed: tuple[Value, ...] | None = None  # the cell that mouse or keys are at
+        self._first: Job | None = None  # opened last: another run may be put beside it
 
     def open(self, scene: str, packing: str, settings: Mapping[str, Value]) -> None:
         """Show it for a scene as it is set; what was asked of that scene before stays."""
@@ -48,11 +61,11 @@ class ExplorePage:
         self.stage.show_explore = True
         self.stage.redraw(True)
         known = registry.get(scene)
-        if (scene, packing, dict(settings)) == (self._scene, self._packing, self._settings):
-            return
-        self.explorer.forget()
-        self._said = ""
-        self._settings, self._packing = dict(settings), packing
+        whole = known.settings(settings)
+        if (scene, packing) == (self._scene, self._packing) and self._same(whole):
+            return  # a run of the map is such a one
+        self._forget()
+        self._settings, self._packing = whole, packing
         if scene == self._scene:
             return
         self._scene = scene
@@ -63,6 +76,11 @@ class ExplorePage:
             Side.around(self._parameters[names.index(name)]) for name in [*dict.fromkeys(liked)][:2]
         ]
 
+    def _same(self, settings: Mapping[str, Value]) -> bool:
+        """Is all set as on the map, apart from what the map varies?"""
+        varied = {STILL, *(side.parameter.name for side in self._sides)}
+        return all(settings[k] == v for k, v in self._settings.items() if k not in varied)
+
     def close(self) -> None:
         """Back to what was there; runs go on."""
         self.stage.show_explore = False
@@ -72,9 +90,9 @@ class ExplorePage:
 
     def tick(self) -> None:
         """Once a picture: is there something new on the map?"""
-        if self.explorer.progress is not self._seen:
-            self._seen = self.explorer.progress
-            self.stage.redraw(self.stage.show_explore)
+        news = self.explorer.progress is not self._seen or self._ends.waiting
+        self._seen = self.explorer.progress
+        self.stage.redraw(news and self.stage.show_explore)
 
     # -- what a person does --
 
@@ -83,19 +101,49 @@ class ExplorePage:
         names = [line.name for line in self._lines()]
         if action in (Action.BACK, Action.EXPLORE):
             self.close()
+        elif action is Action.NEXT_VIEW:
+            self.show_ends_or_shares()
+        elif action is Action.COMPARE:
+            self._take(self._cell_at(self._pointed), beside=True)
+        elif self._chosen == MAP and action in ARROWS:
+            self._move(*ARROWS[action])
+        elif self._chosen == MAP and action in (Action.ENTER, Action.PAUSE):
+            self._take(self._cell_at(self._pointed), beside=False)
         elif action in (Action.UP, Action.DOWN):
             way = 1 if action is Action.DOWN else -1
-            self._chosen = names[(names.index(self._chosen) + way) % len(names)]
+            here = names.index(self._chosen) if self._chosen in names else 0
+            self._chosen = names[(here + way) % len(names)]
         elif action in (Action.LEFT, Action.RIGHT):
             self._change(self._chosen, 1 if action is Action.RIGHT else -1)
         elif action in (Action.ENTER, Action.PAUSE):
-            self.go_or_stop()
+            self.press(self._chosen)
         else:
             return False
         return True
 
-    def click(self, place: tuple[int, int]) -> None:
-        """The mouse was pressed there."""
+    def tab(self) -> None:
+        """From what is asked to the map, and back."""
+        self._chosen = BUTTON if self._chosen == MAP else MAP
+        if self._chosen == MAP and self._pointed is None:
+            self._pointed = next(iter(self._places.cells), None)
+
+    def hover(self, place: tuple[int, int]) -> None:
+        """The mouse is there."""
+        cells = self._places.cells.items()
+        found = next((values for values, rect in cells if rect.collidepoint(place)), None)
+        if found is not None and found != self._pointed:
+            self._pointed = found
+            self.stage.redraw(True)
+
+    def press(self, name: str) -> None:
+        """Enter, or a click, on a line that is a button; on others that of Go."""
+        if name == SHOW:
+            self.show_ends_or_shares()
+        else:
+            self.go_or_stop()
+
+    def click(self, place: tuple[int, int], *, beside: bool = False) -> None:
+        """The mouse was pressed there; ``beside``: with Shift."""
         for (name, way), rect in self._places.arrows.items():
             if rect.collidepoint(place):
                 self._chosen = name
@@ -104,13 +152,13 @@ class ExplorePage:
         for name, rect in self._places.lines.items():
             if rect.collidepoint(place):
                 self._chosen = name
-                if name == BUTTON:
-                    self.go_or_stop()
+                if name in (BUTTON, SHOW):
+                    self.press(name)
                 return
-        for cell in self.explorer.progress.cells:
-            there = self._places.cells.get(cell.values)
-            if there is not None and there.collidepoint(place):
-                self._open_run(self.request().job(cell.row))
+        for values, rect in self._places.cells.items():
+            if rect.collidepoint(place):
+                self._pointed = values
+                self._take(self._cell_at(values), beside=beside)
                 return
 
     def go_or_stop(self) -> None:
@@ -126,10 +174,44 @@ class ExplorePage:
         except InputError as error:
             self._said = words.say(message(error))
 
-    def _open_run(self, job: Job) -> None:
-        """That very run, from its start, in the window."""
-        self.stage.panes.packing = job.packing
-        self.stage.start(job.scene, job.settings, seed=job.seed)
+    def show_ends_or_shares(self) -> None:
+        """How runs ended in place of shares, or the other way about; ends that nobody has kept are run for again."""
+        self.explorer.pictures = not self.explorer.pictures
+        progress = self.explorer.progress
+        if self.explorer.pictures and progress.unseen and not progress.at_work:
+            self.go_or_stop()
+
+    def _cell_at(self, values: tuple[Value, ...] | None) -> MapCell | None:
+        """What is known of the cell with those values."""
+        cells = self.explorer.progress.cells
+        return next((cell for cell in cells if cell.values == values), None)
+
+    def _move(self, across: int, up: int) -> None:
+        """From the cell that is pointed at to another."""
+        first, second = (list(side.values()) for side in self._sides)
+        x, y = self._pointed if self._pointed is not None else (first[0], second[0])
+        column, row = first.index(x) + across, second.index(y) + up
+        self._pointed = (
+            first[min(max(column, 0), len(first) - 1)],
+            second[min(max(row, 0), len(second) - 1)],
+        )
+
+    def _take(self, cell: MapCell | None, *, beside: bool) -> None:
+        """Open a run of a cell, or put it ``beside`` the one that was opened, or marked, before."""
+        if cell is None:
+            return
+        job, first = self.request().job(cell.row), self._first
+        if not beside:
+            self._first = job
+            self._open([job])
+        elif first is None or first == job:
+            self._first = None if first == job else job
+        else:
+            self._open([first, job])
+
+    def _open(self, jobs: Sequence[Job]) -> None:
+        """Those very runs, from their start, in the window."""
+        self.stage.start_beside([Wanted(j.scene, j.packing, j.seed, j.settings) for j in jobs])
         self.stage.send(Protocol(True))  # waits for the scene to be built
 
     def request(self) -> Request:
@@ -149,7 +231,9 @@ class ExplorePage:
 
     def _change(self, name: str, way: int) -> None:
         """One step of a line to the left or the right; the map is another then."""
-        if name == BUTTON:
+        if name == SHOW:
+            self.show_ends_or_shares()
+        if name in (BUTTON, SHOW):
             return
         if name == "seeds":
             self._seeds = min(
@@ -166,8 +250,13 @@ class ExplorePage:
             side.high = max(side.bounded(side.high + way * side.step), side.low)
         else:
             side.count = min(max(side.count + way, 1), MOST_VALUES)
+        self._forget()
+
+    def _forget(self) -> None:
+        """The map is another now."""
         self.explorer.forget()
-        self._said = ""
+        self._ends.forget()
+        self._said, self._pointed, self._first = "", None, None
 
     def _another(self, side: Side, way: int) -> Side:
         """The next parameter that the other axis does not have."""
@@ -179,15 +268,8 @@ class ExplorePage:
 
     def draw(self, painter: Painter) -> None:
         """Draw the whole page."""
-        progress, request = self.explorer.progress, self.request()
-        if progress.error or self._said:
-            status = self._said or progress.error
-        elif not progress.cells and not progress.at_work:
-            status = words.EXPLORE_HINT
-        else:
-            status = words.EXPLORE_STATUS.format(
-                done=progress.done, runs=request.runs, folder=self.folder(request)
-            )
+        progress = self.explorer.progress
+        self._ends.begin(painter.theme.name, progress.frames)
         title = words.EXPLORE_TITLE.format(
             scene=words.title(self._scene, registry.get(self._scene).title),
             packing=words.PACKINGS.get(self._packing, self._packing),
@@ -203,8 +285,51 @@ class ExplorePage:
                 (first.values(), second.values()),
                 progress.cells,
                 self._seeds,
-                status,
+                self._status(progress),
+                self._ends.picture if self.explorer.pictures else None,
+                self._pointed,
+                0 if self._first is None else self._first.row,
             ),
+        )
+
+    def _status(self, progress: Progress) -> str:
+        """What went wrong, or about the cell that is pointed at, or how far it is, or what one can do."""
+        if progress.error or self._said:
+            return self._said or progress.error
+        cell = self._cell_at(self._pointed)
+        if self._first is not None and (cell is None or cell.row == self._first.row):
+            return words.EXPLORE_FIRST.format(
+                where=self._where(self._first.settings), seed=self._first.seed
+            )
+        if cell is not None:
+            return self._about(cell)
+        if not progress.cells and not progress.at_work:
+            return words.EXPLORE_HINT
+        request = self.request()
+        return words.EXPLORE_STATUS.format(
+            done=progress.done, runs=request.runs, folder=self.folder(request)
+        )
+
+    def _about(self, cell: MapCell) -> str:
+        """Where it is, its share with the interval, and what a click opens."""
+        job = self.request().job(cell.row)
+        outcome = words.OUTCOMES.get(cell.outcome, cell.outcome)
+        low, high = cell.interval
+        share = words.EXPLORE_SHARE.format(share=cell.share or 0.0, low=low, high=high)
+        return words.EXPLORE_CELL.format(
+            where=self._where(job.settings),
+            share=outcome if cell.share is None else share,
+            count=cell.counted or cell.runs,
+            seed=job.seed,
+            outcome=outcome,
+        )
+
+    def _where(self, settings: Mapping[str, Value]) -> str:
+        """The values of both parameters."""
+        names = [side.parameter.name for side in self._sides]
+        return ", ".join(
+            words.EXPLORE_AT.format(name=words.parameter_name(name), value=settings[name])
+            for name in names
         )
 
     def _lines(self) -> list[Line]:
@@ -215,12 +340,18 @@ class ExplorePage:
             name = words.parameter_name(side.parameter.name)
             lines += [
                 Line(f"{number}name", title, name),
-                Line(f"{number}low", words.EXPLORE_FROM, f"{side.low:.4g}"),
-                Line(f"{number}high", words.EXPLORE_TO, f"{side.high:.4g}"),
+                Line(f"{number}low", words.EXPLORE_FROM, short_number(side.low)),
+                Line(f"{number}high", words.EXPLORE_TO, short_number(side.high)),
                 Line(f"{number}count", words.EXPLORE_VALUES, str(side.count)),
             ]
         button = words.EXPLORE_STOP if self.explorer.progress.at_work else words.EXPLORE_GO
-        return [*lines, Line("seeds", words.EXPLORE_SEEDS, str(self._seeds)), Line(BUTTON, button)]
+        shown = words.EXPLORE_ENDS if self.explorer.pictures else words.EXPLORE_SHARES
+        return [
+            *lines,
+            Line("seeds", words.EXPLORE_SEEDS, str(self._seeds)),
+            Line(SHOW, words.EXPLORE_SHOW, shown),
+            Line(BUTTON, button),
+        ]
 
 
 def _titled(parameter: Parameter) -> str:
