@@ -10,6 +10,8 @@ import pygame
 
 from sandbox.draw.raster import ToScreen
 
+NEAREST = 40.0  # times as near as where all is seen
+
 
 @dataclass(frozen=True, slots=True)
 class Camera:
@@ -63,3 +65,48 @@ class Camera:
     def to_world(self, x: float, y: float) -> tuple[float, float]:
         """The place in the world under a pixel."""
         return (x - self.offset_x) / self.scale, (self.offset_y - y) / self.scale
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """Which part of a whole picture is looked at: how much nearer, and how far its middle is from that of the whole."""
+
+    nearer: float = 1.0
+    x: float = 0.0  # [R]
+    y: float = 0.0  # [R]
+
+    def camera(self, whole: Camera, rect: pygame.Rect) -> Camera:
+        """A camera that shows this part in the rectangle that ``whole`` fills."""
+        middle_x, middle_y = whole.to_world(
+            rect.left + 0.5 * rect.width, rect.top + 0.5 * rect.height
+        )
+        scale = self.nearer * whole.scale
+        return Camera(
+            scale,
+            rect.left + 0.5 * rect.width - scale * (middle_x + self.x),
+            rect.top + 0.5 * rect.height + scale * (middle_y + self.y),
+        )
+
+    def moved(self, dx: float, dy: float, whole: Camera, rect: pygame.Rect) -> Sight:
+        """The picture pushed by so many pixels, not beyond the edges of the whole."""
+        scale = self.nearer * whole.scale
+        return self._within(self.nearer, self.x - dx / scale, self.y + dy / scale, whole, rect)
+
+    def towards(
+        self, factor: float, place: tuple[float, float], whole: Camera, rect: pygame.Rect
+    ) -> Sight:
+        """So many times nearer, and what is at a place of the screen stays there as far as that is possible."""
+        nearer = min(max(self.nearer * factor, 1.0), NEAREST)
+        away_x = (place[0] - rect.left - 0.5 * rect.width) / whole.scale
+        away_y = (rect.top + 0.5 * rect.height - place[1]) / whole.scale
+        grown = 1.0 / self.nearer - 1.0 / nearer
+        return self._within(nearer, self.x + away_x * grown, self.y + away_y * grown, whole, rect)
+
+    @staticmethod
+    def _within(nearer: float, x: float, y: float, whole: Camera, rect: pygame.Rect) -> Sight:
+        most_x = 0.5 * rect.width / whole.scale * (1.0 - 1.0 / nearer)
+        most_y = 0.5 * rect.height / whole.scale * (1.0 - 1.0 / nearer)
+        return Sight(nearer, min(max(x, -most_x), most_x), min(max(y, -most_y), most_y))
+
+
+ALL = Sight()

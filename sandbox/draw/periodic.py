@@ -72,11 +72,18 @@ def draw_cell(painter: Painter, rect: pygame.Rect, camera: Camera, frame: Frame)
     scale = painter.scale
     inside = cell_rect(rect, camera, frame.box)
     sides = []
-    if math.isfinite(width):
-        sides += [(x, inside.top, x, inside.bottom) for x in (inside.left, inside.right - 1)]
+    left, bottom = camera.to_screen(0.0, 0.0)
+    if math.isfinite(width):  # a side that is out of sight is not drawn at the canvas' edge
+        ends = (left, inside.left), (camera.to_screen(width, 0.0)[0], inside.right - 1)
+        seen = [x for at, x in ends if rect.left - 1 <= at <= rect.right + 1]
+        sides += [(x, inside.top, x, inside.bottom) for x in seen]
     if math.isfinite(height):
-        sides += [(inside.left, y, inside.right, y) for y in (inside.top, inside.bottom - 1)]
+        ends = (bottom, inside.bottom - 1), (camera.to_screen(0.0, height)[1], inside.top)
+        seen = [y for at, y in ends if rect.top - 1 <= at <= rect.bottom + 1]
+        sides += [(inside.left, y, inside.right, y) for y in seen]
+    if not sides:
+        return
     for side in sides:
-        ends = np.array([side], dtype=np.float64).T
-        pieces = dashed((ends[0], ends[1], ends[2], ends[3]), 9.0 * scale, 6.0 * scale)
+        x0, y0, x1, y1 = np.array([side], dtype=np.float64).T
+        pieces = dashed((x0, y0, x1, y1), 9.0 * scale, 6.0 * scale)
         painter.lines(pieces, 2.0 * scale, painter.theme.soft_text, clip=rect)

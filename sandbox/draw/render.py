@@ -11,7 +11,7 @@ import pygame
 import pygame.surfarray
 from numpy.typing import NDArray
 
-from sandbox.draw.camera import Camera
+from sandbox.draw.camera import ALL, Camera
 from sandbox.draw.flashes import Flash, draw_flash
 from sandbox.draw.layout import Layout, layout
 from sandbox.draw.legend import draw_header
@@ -63,6 +63,8 @@ class Renderer:
         self.cameras: tuple[Camera, ...] = (
             Camera.fit((-1.0, -1.0, 1.0, 1.0), self.layout.canvas, 0.0),
         )
+        self.sight = ALL  # the same part of each canvas
+        self.wholes: tuple[Camera, ...] = self.cameras  # that would show all
         self.bodies = [self.layout.canvas]  # what of each canvas the grains have
         self.plot_least: Axes | None = None  # axes that the plot has at least
         self.plot_box: PlotBox | None = None  # inside the axes, of the latest picture
@@ -161,7 +163,9 @@ class Renderer:
         self.bodies = bodies
         bounds = [(frame or shown[0]).bounds for frame in panes]
         views = list(zip(bounds, bodies, strict=True))
-        self.cameras = Camera.fit_all(views, MARGIN * self.scale)
+        self.wholes = Camera.fit_all(views, MARGIN * self.scale)
+        seen = zip(self.wholes, bodies, strict=True)
+        self.cameras = tuple(self.sight.camera(whole, body) for whole, body in seen)
         looks, chain_top = self._looks(shown)
         forces = [math.hypot(handle.fx, handle.fy) for frame in shown for handle in frame.handles]
         hand_top = self._hand_scale.follow(max(forces, default=0.0))

@@ -38,6 +38,17 @@ HIDES = {
 }
 
 
+# On a page, where there is nothing to look at more closely.
+ON_PAGES = {
+    Action.NEARER: Action.LARGER,
+    Action.FARTHER: Action.SMALLER,
+    Action.LOOK_LEFT: Action.LEFT,
+    Action.LOOK_RIGHT: Action.RIGHT,
+    Action.LOOK_UP: Action.UP,
+    Action.LOOK_DOWN: Action.DOWN,
+}
+
+
 class Actions:
     """All that can be asked for, under a page or not."""
 
@@ -46,6 +57,8 @@ class Actions:
 
     def act(self, action: Action) -> None:
         """What a key or a button asks for."""
+        if self.stage.show_menu or self.stage.show_help or self.stage.show_explore:
+            action = ON_PAGES.get(action, action)
         pages = self.stage.show_menu or self.stage.show_help or self.stage.show_explore
         if HIDES.get(action) in self.pages.guide.hidden and not pages:
             self.stage.toast(words.HIDDEN_HERE)

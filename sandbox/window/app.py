@@ -25,6 +25,7 @@ from sandbox.window.canvas.arrows import Arrows
 from sandbox.window.canvas.brush import Brush
 from sandbox.window.canvas.canvas import Canvas
 from sandbox.window.canvas.inspector import Inspector
+from sandbox.window.canvas.looking import Looking
 from sandbox.window.display import FRAMES, USUAL, Looks, Rate
 from sandbox.window.film import found_films
 from sandbox.window.guide import Guide
@@ -143,6 +144,7 @@ class App:
             self.guide.asking,
             self.timeline,
             wishes,
+            Looking(stage),
             self.measuring,
             self.brush,
             self.inspector,

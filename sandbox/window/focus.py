@@ -24,7 +24,7 @@ REPEATING = frozenset(
         pygame.K_TAB,
     }
 )
-REPEATING_SIGNS = frozenset("[]s")
+REPEATING_SIGNS = frozenset("[]s+=-")
 
 Stops = Callable[[], Sequence[str]]
 

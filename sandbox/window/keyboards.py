@@ -11,10 +11,10 @@ import unicodedata
 
 import pygame
 
-SIGNS = frozenset(" 123456789[],.+-=?")  # that mean something whichever key writes them
+SIGNS = frozenset(" 0123456789[],.+-=?")  # that mean something whichever key writes them
 
 _LETTERS = {pygame.KSCAN_A + rank: letter for rank, letter in enumerate(string.ascii_lowercase)}
-_DIGITS = {pygame.KSCAN_1 + rank: digit for rank, digit in enumerate("123456789")}
+_DIGITS = {pygame.KSCAN_1 + rank: digit for rank, digit in enumerate("1234567890")}
 _OTHERS = {
     pygame.KSCAN_LEFTBRACKET: "[",
     pygame.KSCAN_RIGHTBRACKET: "]",

@@ -31,6 +31,13 @@ class Action(enum.Enum):
     TOUR = enum.auto()
     LARGER = enum.auto()
     SMALLER = enum.auto()
+    NEARER = enum.auto()
+    FARTHER = enum.auto()
+    WHOLE = enum.auto()
+    LOOK_LEFT = enum.auto()
+    LOOK_RIGHT = enum.auto()
+    LOOK_UP = enum.auto()
+    LOOK_DOWN = enum.auto()
     SCREENSHOT = enum.auto()
     BACK = enum.auto()
     ENTER = enum.auto()
@@ -79,9 +86,10 @@ _SIGNS = {
     "t": Action.THEME,
     "l": Action.LANGUAGE,
     "y": Action.TOUR,
-    "+": Action.LARGER,
-    "=": Action.LARGER,
-    "-": Action.SMALLER,
+    "+": Action.NEARER,
+    "=": Action.NEARER,
+    "-": Action.FARTHER,
+    "0": Action.WHOLE,
     "k": Action.FOLD,
     "b": Action.BRUSH,
     "i": Action.NEXT_CONTACT,
@@ -113,12 +121,26 @@ _KEYS = {
     pygame.K_RIGHT: Action.RIGHT,
     pygame.K_UP: Action.UP,
     pygame.K_DOWN: Action.DOWN,
-    pygame.K_KP_PLUS: Action.LARGER,
-    pygame.K_KP_MINUS: Action.SMALLER,
+    pygame.K_KP_PLUS: Action.NEARER,
+    pygame.K_KP_MINUS: Action.FARTHER,
+}
+
+_WITH_SHIFT = {
+    pygame.K_LEFT: Action.LOOK_LEFT,
+    pygame.K_RIGHT: Action.LOOK_RIGHT,
+    pygame.K_UP: Action.LOOK_UP,
+    pygame.K_DOWN: Action.LOOK_DOWN,
 }
 
 # With Ctrl.
 _COMMANDS = {"z": Action.UNDO, "y": Action.REDO, "s": Action.SAVE}
+_SIZES = {
+    pygame.K_PLUS: Action.LARGER,
+    pygame.K_EQUALS: Action.LARGER,
+    pygame.K_KP_PLUS: Action.LARGER,
+    pygame.K_MINUS: Action.SMALLER,
+    pygame.K_KP_MINUS: Action.SMALLER,
+}
 _BRACKETS = ("[", "]")
 
 
@@ -126,9 +148,13 @@ def action_of(event: pygame.event.Event) -> Action | None:
     """What a KEYDOWN event asks for, if anything."""
     if _asks_for_the_screen(event):
         return Action.FULLSCREEN
+    mod, letter = getattr(event, "mod", 0), letter_of(event)
+    if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and event.key in _SIZES:
+        return _SIZES[event.key]
+    if mod & pygame.KMOD_SHIFT and event.key in _WITH_SHIFT:
+        return _WITH_SHIFT[event.key]
     if event.key in _KEYS:
         return _KEYS[event.key]
-    mod, letter = getattr(event, "mod", 0), letter_of(event)
     if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and letter in _COMMANDS:
         again = letter == "z" and mod & pygame.KMOD_SHIFT
         return Action.REDO if again else _COMMANDS[letter]

@@ -40,9 +40,9 @@ us -     91  47 [  BACKWARD
 us -     93  48 ]  FORWARD
 us -     44  54 ,  SLOWER
 us -     46  55 .  FASTER
-us -     61  46 =  LARGER
-us S     61  46 +  LARGER
-us -     45  45 -  SMALLER
+us -     61  46 =  NEARER
+us S     61  46 +  NEARER
+us -     45  45 -  FARTHER
 us S     49  30 !  -
 us -     47  56 /  -
 de -    122  28 z  UNDO
@@ -65,8 +65,8 @@ de G     56  37 [  BACKWARD
 de G     57  38 ]  FORWARD
 de -     44  54 ,  SLOWER
 de -     46  55 .  FASTER
-de -     43  48 +  LARGER
-de -     45  56 -  SMALLER
+de -     43  48 +  NEARER
+de -     45  56 -  FARTHER
 de -    252  47 ü  -
 de -    223  45 ß  -
 de S     49  30 !  -
@@ -91,9 +91,9 @@ fr G     53  34 [  BACKWARD
 fr G     41  45 ]  FORWARD
 fr -     44  16 ,  SLOWER
 fr S     59  54 .  FASTER
-fr -     61  46 =  LARGER
-fr S     61  46 +  LARGER
-fr -     54  35 -  SMALLER
+fr -     61  46 =  NEARER
+fr S     61  46 +  NEARER
+fr -     54  35 -  FARTHER
 fr S     44  16 ?  HELP
 fr -     59  54 ;  -
 fr -    249  52 ù  -
@@ -120,8 +120,8 @@ ru -   1073  54 б  SLOWER
 ru -   1102  55 ю  FASTER
 ru -     46  56 .  FASTER
 ru S     46  56 ,  SLOWER
-ru -     61  46 =  LARGER
-ru -     45  45 -  SMALLER
+ru -     61  46 =  NEARER
+ru -     45  45 -  FARTHER
 ru -   1078  51 ж  -
 ru -   1101  52 э  -
 gr -    950  29 ζ  UNDO
@@ -144,8 +144,8 @@ gr -     91  47 [  BACKWARD
 gr -     93  48 ]  FORWARD
 gr -     44  54 ,  SLOWER
 gr -     46  55 .  FASTER
-gr -     61  46 =  LARGER
-gr -     45  45 -  SMALLER
+gr -     61  46 =  NEARER
+gr -     45  45 -  FARTHER
 gr -     59  20 ;  -
 gr -    962  26 ς  SAVE
 il -   1494  29 ז  UNDO
@@ -172,8 +172,8 @@ il -     46  56 .  FASTER
 il -     44  52 ,  SLOWER
 il S     46  56 ?  HELP
 il S     39  26 W  SAVE
-il -     61  46 =  LARGER
-il -     45  45 -  SMALLER
+il -     61  46 =  NEARER
+il -     45  45 -  FARTHER
 il -   1507  51 ף  -
 il -     47  20 /  -
 """

@@ -183,10 +183,10 @@ def test_chains_theme_scale_and_help(running: Desk) -> None:
     assert not running.app.stage.renderer.chains
     running.key(pygame.K_t)
     assert running.app.stage.renderer.theme.name == "light"
-    running.key(pygame.K_PLUS, "+")
+    running.key(pygame.K_PLUS, "+", pygame.KMOD_LCTRL)
     assert running.app.stage.renderer.scale == 1.25
-    running.key(pygame.K_MINUS, "-")
-    running.key(pygame.K_MINUS, "-")
+    running.key(pygame.K_MINUS, "-", pygame.KMOD_LCTRL)
+    running.key(pygame.K_MINUS, "-", pygame.KMOD_LCTRL)
     assert running.app.stage.renderer.scale == 1.0
     running.key(pygame.K_F1)
     assert running.page() == "help"
