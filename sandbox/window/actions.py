@@ -127,7 +127,15 @@ class Actions:
                 self.stage.panes.go_on()
         elif (packing := self._packing(action)) is not None:
             self.pages.take(Choice(packing=packing))
-        elif (asked := self.pages.take(self.pages.menu.key(action))) is not None:
+        else:
+            self._take(self.pages.menu.key(action))
+
+    def choose(self, name: str) -> None:
+        """Something in the menu, by its name."""
+        self._take(self.pages.menu.taken(name))
+
+    def _take(self, choice: Choice) -> None:
+        if (asked := self.pages.take(choice)) is not None:
             self.act(asked)
 
     def _on_run(self, action: Action) -> None:

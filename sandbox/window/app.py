@@ -20,6 +20,8 @@ from sandbox.lessons.answers import Answers
 from sandbox.lessons.lesson import Lesson
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Protocol
+from sandbox.window.access.reader import Reader
+from sandbox.window.access.tree import Parts
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.arrows import Arrows
 from sandbox.window.canvas.brush import Brush
@@ -154,6 +156,18 @@ class App:
             reel,
             Canvas(stage),
         ]
+        self.reader = Reader(
+            Parts(
+                stage,
+                self.pages,
+                self.actions,
+                self.guide,
+                self.panel,
+                self.timeline,
+                arrows,
+                self.question,
+            )
+        )
         self.farewell = ""  # what is left to say when the window is closed
         self._splash = True  # is that what the window shows?
         self._drawn = 0.0
@@ -209,6 +223,7 @@ class App:
         if said := stage.recorder.tick(stage.renderer.surface, now):
             stage.toast(said)
         stage.dirty |= stage.recorder.second_passed(now)
+        self.reader.tick(now)
         stage.tone.follow(snapshot.frame if stage.parts_now() else None, now)
         moving = self._splash or stage.picture.moving or stage.mouse.holding
         if stage.dirty or moving or now - self._drawn >= REST:
@@ -291,6 +306,7 @@ class App:
         """One event: for the parts, for a page, or a key that stands for an action."""
         stage = self.stage
         stage.focus.watch(event)
+        self.reader.watch(event)
         if event.type == pygame.QUIT:
             stage.running = False
         elif event.type in (pygame.VIDEORESIZE, pygame.WINDOWSIZECHANGED):

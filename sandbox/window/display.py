@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import pygame
@@ -60,7 +61,8 @@ def open_display(looks: Looks) -> tuple[pygame.Surface, float]:
             os.environ.setdefault("SDL_FRAMEBUFFER_ACCELERATION", "0")
         desktop = _desktop(looks.display, pygame.display.get_desktop_sizes())
         size, scale = window_of(looks, desktop)
-        screen = pygame.display.set_mode(size, pygame.RESIZABLE, display=looks.display - 1)
+        flags = pygame.RESIZABLE | (pygame.HIDDEN if shown_later() else 0)
+        screen = pygame.display.set_mode(size, flags, display=looks.display - 1)
     except (pygame.error, IndexError) as error:
         raise InputError(f"{NO_DISPLAY} ({error})") from None
     pygame.display.set_caption(words.SPLASH_TITLE)
@@ -97,6 +99,24 @@ def window_of(looks: Looks, desktop: tuple[int, int]) -> tuple[tuple[int, int], 
     return (width, height), max(fitting, default=SCALES[0])
 
 
+def shown_later() -> bool:
+    """Is the window hidden at first? Windows and macOS look for what a screen reader needs when it is shown."""
+    return sys.platform in ("win32", "darwin") and find_spec("accesskit") is not None
+
+
+def show_display() -> None:
+    """Show the window, if it is still hidden."""
+    if shown_later():
+        _window().show()
+
+
+def _window() -> pygame.Window:
+    """The window as an object."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        return pygame.Window.from_display_module()
+
+
 def natural_scale(height: int) -> float:
     """The UI scale that suits a desktop of that height [px]: larger on one with many pixels."""
     return 2.0 if height >= 2000 else 1.5 if height >= 1400 else 1.0
@@ -104,10 +124,8 @@ def natural_scale(height: int) -> float:
 
 def switch_fullscreen(on: bool | None = None) -> None:
     """Take all of the screen that the window is on, or go back to the window; None: the other of the two."""
-    with warnings.catch_warnings():
-        # The other way, pygame.display.toggle_fullscreen, makes another window and tells wrong sizes afterwards.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        window = pygame.Window.from_display_module()
+    # The other way, pygame.display.toggle_fullscreen, makes another window and tells wrong sizes afterwards.
+    window = _window()
     if not is_fullscreen() if on is None else on:
         window.set_fullscreen(True)  # as large as the desktop: no other mode of the screen
     else:

@@ -227,7 +227,7 @@ class Guide(Silent):
         self._hover = self._button_at(event.pos)
         inside = self.rect.collidepoint(event.pos)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._hover:
-            self._press(self._hover)
+            self.press(self._hover)
         pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
         return inside or (pressed and self.asking.refuse(event.pos))
 
@@ -238,7 +238,7 @@ class Guide(Silent):
             pass  # Enter goes on from there, Backspace does not go back
         elif focus.name in self.stops():
             if enter or key == pygame.K_SPACE:
-                self._press(focus.name)
+                self.press(focus.name)
                 return True
             return False
         keys = {pygame.K_BACKSPACE: BACK, pygame.K_ESCAPE: CLOSE}
@@ -246,16 +246,22 @@ class Guide(Silent):
         at_question = name in (NEXT, CLOSE) and focus.name in self.asking.stops()
         if not name or not (focus.on_canvas or at_question):
             return False
-        self._press(name)
+        self.press(name)
         return True
 
-    def _press(self, name: str) -> None:
+    def press(self, name: str) -> None:
+        """A button, an option, or the field of a number."""
         if name.startswith(OPTION):
             self.asking.choose(int(name.removeprefix(OPTION)))
         elif name == FIELD:
             self.stage.focus.go(FIELD, False)
         else:
             {NEXT: self.next, BACK: self.back, CLOSE: self.close}[name]()
+
+    @property
+    def titles(self) -> dict[str, str]:
+        """What its buttons say."""
+        return {NEXT: self.page.onward, BACK: words.TOUR_BACK, CLOSE: words.CLOSE}
 
     def stops(self) -> list[str]:
         """Buttons that Tab goes to."""

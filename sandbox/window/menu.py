@@ -83,12 +83,12 @@ class Menu:
         if scene:
             self.choose(scene)
         elif self.resume:
-            self._go(TAKE_UP)
+            self.go(TAKE_UP)
 
     def choose(self, scene: str) -> None:
         """Put the choice on a scene."""
         if scene in registry.names():
-            self._go(SCENE + scene)
+            self.go(SCENE + scene)
 
     @property
     def scene_chosen(self) -> str:
@@ -142,15 +142,15 @@ class Menu:
         if stops:
             way = -1 if getattr(event, "mod", 0) & pygame.KMOD_SHIFT else 1
             here = stops.index(self.chosen) if self.chosen in stops else -way
-            self._go(stops[(here + way) % len(stops)])
+            self.go(stops[(here + way) % len(stops)])
         return True
 
     def key(self, action: Action) -> Choice:
         """Arrows move the choice, Enter takes it."""
         if action in ARROWS and self._places is not None:
-            self._go(self._places.neighbour(self.chosen, ARROWS[action]))
+            self.go(self._places.neighbour(self.chosen, ARROWS[action]))
         elif action in (Action.ENTER, Action.PAUSE):
-            return self._taken(self.chosen)
+            return self.taken(self.chosen)
         elif action is Action.TOUR:
             return Choice(tour=self.chosen.removeprefix(SCENE)) if self._tour_here() else Choice()
         return Choice()
@@ -171,7 +171,7 @@ class Menu:
         name = self._at(place)
         if name and not name.startswith(TOUR):
             self.chosen = name
-        return self._taken(name)
+        return self.taken(name)
 
     def wheel(self, notches: float, step: int) -> None:
         """Scroll by notches of ``step`` pixels."""
@@ -200,7 +200,8 @@ class Menu:
         shown = self._places.shown(name, self.scroll)
         return self._places.shown(SCENE + name, self.scroll) if shown is None else shown
 
-    def _go(self, name: str) -> None:
+    def go(self, name: str) -> None:
+        """Put the choice on anything."""
         self.chosen = name
         self._note_scene(name)
         self._follow = True
@@ -217,7 +218,7 @@ class Menu:
         return self.chosen.startswith(SCENE) and scene in tours.scenes()
 
     @staticmethod
-    def _taken(name: str) -> Choice:
+    def taken(name: str) -> Choice:
         """What the name of something pressed means."""
         kind, _, rest = name.partition("/")
         match kind + "/":

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 
 from sandbox.words import words
 
 STAY = 2.5  # of a notice [s]
+MOST = 20  # notices that are kept
 
 
 class Notices:
@@ -16,10 +18,14 @@ class Notices:
         self.latest = ""
         self.hints = True  # has nobody found out how to begin?
         self._until = 0.0
+        self.said: deque[str] = deque(maxlen=MOST)  # the latest, for who hears them
+        self.count = 0  # of all
 
     def say(self, text: str) -> None:
         """Say something for a moment."""
         self.latest, self._until = text, time.perf_counter() + STAY
+        self.said.append(text)
+        self.count += 1
 
     def tick(self, now: float) -> bool:
         """True when the notice has been there long enough."""

@@ -25,7 +25,7 @@ class ExportQuestion(Silent):
     def __init__(self, stage: Stage, reel: Reel) -> None:
         self.stage, self.reel = stage, reel
         self.asking = False
-        self._place = 0
+        self.place = 0
         self._answers: list[pygame.Rect] = []
 
     def act(self, action: Action) -> bool:
@@ -37,11 +37,11 @@ class ExportQuestion(Silent):
                 self.stage.redraw(True)
             return self.asking
         if action in STEPS:
-            self._place = (self._place + STEPS[action]) % ANSWERS
+            self.place = (self.place + STEPS[action]) % ANSWERS
         elif action in PACKING_ACTIONS[:ANSWERS]:
-            self._answer(PACKING_ACTIONS.index(action))
+            self.answer(PACKING_ACTIONS.index(action))
         elif action in (Action.ENTER, Action.PAUSE, Action.EXPORT):
-            self._answer(self._place)
+            self.answer(self.place)
         else:
             self.asking = False
             return action is Action.BACK
@@ -59,16 +59,17 @@ class ExportQuestion(Silent):
         if event.type == pygame.MOUSEMOTION:
             for index, rect in enumerate(self._answers):
                 if rect.collidepoint(event.pos):
-                    self._place = index
+                    self.place = index
         elif event.type == pygame.MOUSEBUTTONDOWN and event.button == 1:
             hit = [k for k, rect in enumerate(self._answers) if rect.collidepoint(event.pos)]
             self.asking = False
             if hit:
-                self._answer(hit[0])
+                self.answer(hit[0])
         return event.type in (pygame.MOUSEMOTION, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
 
-    def _answer(self, place: int) -> None:
-        self.asking, self._place = False, place
+    def answer(self, place: int) -> None:
+        """The question is answered."""
+        self.asking, self.place = False, place
         if place == PAGE:
             self.stage.toast(self.reel.save())
             return
@@ -76,16 +77,20 @@ class ExportQuestion(Silent):
         shown = self.stage.panes.curves.shown(frames[0])
         self.stage.toast(export(frames, shown, _spelling(place)))
 
+    @staticmethod
+    def answers() -> tuple[tuple[str, str], ...]:
+        """What there is to choose from, with a line about each."""
+        return (
+            (words.EXPORT_PLAIN, words.EXPORT_PLAIN_HELP),
+            (words.EXPORT_EXCEL, words.EXPORT_EXCEL_HELP),
+            (words.EXPORT_PAGE, words.EXPORT_PAGE_HELP),
+        )
+
     def draw_over(self, painter: Painter) -> None:
         """The card over all other parts, while it asks."""
         if self.asking:
-            answers = (
-                (words.EXPORT_PLAIN, words.EXPORT_PLAIN_HELP),
-                (words.EXPORT_EXCEL, words.EXPORT_EXCEL_HELP),
-                (words.EXPORT_PAGE, words.EXPORT_PAGE_HELP),
-            )
-            asked = Asked(words.EXPORT_ASK, answers, words.EXPORT_WITHOUT)
-            self._answers = draw_question(painter, asked, self._place)
+            asked = Asked(words.EXPORT_ASK, self.answers(), words.EXPORT_WITHOUT)
+            self._answers = draw_question(painter, asked, self.place)
 
 
 def _spelling(place: int) -> Spelling:

@@ -92,8 +92,13 @@ class Timeline(Silent):
         )
         paused = self.stage.panes.paused
         return (
-            Button("time/play", "▶" if paused else "⏸", help=words.PLAY_HELP),
-            Button("time/step", "⏭", help=words.STEP_HELP),
+            Button(
+                "time/play",
+                "▶" if paused else "⏸",
+                help=words.PLAY_HELP,
+                spoken=words.PLAY if paused else words.PAUSE,
+            ),
+            Button("time/step", "⏭", help=words.STEP_HELP, spoken=words.STEP),
             Choice("time/speed", "", options, SPEED_NAMES[self.speed], words.SPEED_HELP),
         )
 

@@ -52,7 +52,7 @@ def test_preferences_are_kept(own_preferences: Path) -> None:
 
 
 def test_a_choice_is_there_in_the_next_window(desk: Desk) -> None:
-    desk.app.panel._use("looks/motion", True, True)
+    desk.app.panel.use("looks/motion", True, True)
     assert preferences.read() == Preferences(still=True)
     desk.app.close()
     again = Desk((800, 600))
@@ -68,7 +68,7 @@ def test_a_choice_that_cannot_be_kept_says_so(
 ) -> None:
     own_preferences.parent.joinpath("file").touch()
     monkeypatch.setattr(preferences, "path", lambda: own_preferences.parent / "file" / "p.json")
-    desk.app.panel._use("looks/motion", True, True)
+    desk.app.panel.use("looks/motion", True, True)
     assert "p.json" in desk.app.stage.notices.latest
     assert desk.app.stage.still  # for this window all the same
 

@@ -100,9 +100,10 @@ class Button:
 
     name: str
     title: str
-    on: bool = False  # what it switches is on
+    on: bool | None = None  # is what it switches on? None: it switches nothing
     enabled: bool = True
     help: str = ""
+    spoken: str = ""  # its name for who hears it, where the title is a sign
 
 
 @dataclass(frozen=True, slots=True)

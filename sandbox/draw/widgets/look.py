@@ -300,18 +300,19 @@ def _draw_arrows(painter: Painter, parts: Parts, signs: str, hover: bool) -> Non
 def _draw_button(painter: Painter, button: Button, rect: pygame.Rect, hover: bool) -> None:
     theme, type_ = painter.theme, painter.type
     inner = rect.inflate(0, -round(4 * painter.scale))
-    _field(painter, inner, hover and button.enabled, button.on)
-    colour = theme.panel if button.on else theme.text
+    on = bool(button.on)
+    _field(painter, inner, hover and button.enabled, on)
+    colour = theme.panel if on else theme.text
     if not button.enabled:
         colour = mix(theme.soft_text, theme.panel, 0.45)
     if button.title in SIGNS:
         draw_sign(painter, button.title, inner, colour)
         return
     room = inner.width - round(8 * painter.scale)
-    large = type_.width(button.title, BODY, button.on) <= room
-    size = BODY if large else type_.fitting(button.title, SMALL, room, button.on)
-    text = type_.shortened(button.title, size, room, button.on)
-    painter.text(text, *inner.center, size=size, colour=colour, anchor="centre", bold=button.on)
+    large = type_.width(button.title, BODY, on) <= room
+    size = BODY if large else type_.fitting(button.title, SMALL, room, on)
+    text = type_.shortened(button.title, size, room, on)
+    painter.text(text, *inner.center, size=size, colour=colour, anchor="centre", bold=on)
 
 
 def _draw_heading(painter: Painter, heading: Heading, rect: pygame.Rect, hover: bool) -> None:

@@ -56,23 +56,37 @@ class Arrows(Silent):
         if action not in WAYS or handle is None or self.stage.mouse.holding:
             return False
         step = self._step(handle, *WAYS[action])
-        if step == (0.0, 0.0):
-            return True
+        if step != (0.0, 0.0):
+            self.lead(handle, *step)
+        return True
+
+    def lead(self, handle: HandleState, x: float, y: float) -> None:
+        """On from where the hand wants it, by so much [R]; never far ahead of the body."""
+        self._take(handle)
+        x, y = self._target[0] + x - handle.x, self._target[1] + y - handle.y
+        far = max(math.hypot(x, y) / LEAD, 1.0)
+        self._move(handle.x + x / far, handle.y + y / far)
+
+    def lead_to(self, handle: HandleState, x: float, y: float) -> None:
+        """To a place [R], however far that is."""
+        self._take(handle)
+        self._move(x, y)
+
+    def _take(self, handle: HandleState) -> None:
+        """Another gesture, to be undone by itself, after a pause or with another handle."""
         now = time.perf_counter()
         if handle.name != self._held or now - self._pressed > PAUSE:
             if self._held and self._held != handle.name:
                 self.stage.send(Release(self._held))
             self._held = handle.name
-            start = handle.target if handle.target is not None else (handle.x, handle.y)
-            self._target = start
+            self._target = handle.target if handle.target is not None else (handle.x, handle.y)
             self.stage.send(Grab(handle.name))
         self._pressed = now
-        x, y = self._target[0] + step[0] - handle.x, self._target[1] + step[1] - handle.y
-        far = max(math.hypot(x, y) / LEAD, 1.0)
-        self._target = (handle.x + x / far, handle.y + y / far)
-        self.stage.send(Move(handle.name, *self._target))
+
+    def _move(self, x: float, y: float) -> None:
+        self._target = (x, y)
+        self.stage.send(Move(self._held, x, y))
         self.stage.has_begun()
-        return True
 
     def _step(self, handle: HandleState, x: float, y: float) -> tuple[float, float]:
         """A step of the hand; along the line that the handle can slide on."""

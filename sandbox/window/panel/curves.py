@@ -36,8 +36,14 @@ class CurvesSection(StageSection):
                         f"curves/show/{kept.key}",
                         "◉" if kept.visible else "○",
                         help=words.CURVE_SHOW_HELP,
+                        spoken=f"{kept.name}: {words.CURVE_SHOW_HELP}",
                     ),
-                    Button(f"curves/delete/{kept.key}", "×", help=words.CURVE_DELETE_HELP),
+                    Button(
+                        f"curves/delete/{kept.key}",
+                        "×",
+                        help=words.CURVE_DELETE_HELP,
+                        spoken=f"{kept.name}: {words.CURVE_DELETE_HELP}",
+                    ),
                 ),
                 (5.0, 1.0, 1.0),
             )

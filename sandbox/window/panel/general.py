@@ -119,10 +119,11 @@ class GeneralSection:
         return controls
 
     def _button(
-        self, name: str, *, on: bool = False, enabled: bool = True, sign: str = ""
+        self, name: str, *, on: bool | None = None, enabled: bool = True, sign: str = ""
     ) -> Button:
         about = words.BUTTONS_HELP[name]
-        return Button(f"general/{name}", sign or words.BUTTONS[name], on, enabled, about)
+        title = words.BUTTONS.get(name, words.first_sentence(about))
+        return Button(f"general/{name}", sign or title, on, enabled, about, title)
 
     def use(self, name: str, value: Value, done: bool) -> None:
         """Do it."""

@@ -93,6 +93,11 @@ class Panel(Silent):
         return None if place is None else place.rect.move(self.rect.left, -self.scroll)
 
     @property
+    def places(self) -> Sequence[Place]:
+        """Its controls, unscrolled."""
+        return self._places.all
+
+    @property
     def _view(self) -> int:
         """Height of what shows of the controls [px]."""
         return self.rect.height - foot_height(self.rect.height, self.stage.renderer.type)
@@ -233,7 +238,7 @@ class Panel(Silent):
         x, y = self._unscrolled(pos)
         if double and not parts.box.collidepoint(x, y):
             self._press = None
-            self._use(name, control.default, True)
+            self.use(name, control.default, True)
         elif parts.track.inflate(2 * round(PAD * self.stage.renderer.scale), 0).collidepoint(x, y):
             self._press.slides = True
             self.draft = Draft(name, control.value, by_mouse=True)
@@ -263,7 +268,7 @@ class Panel(Silent):
         value = slid_to(place.control, parts, self._unscrolled(pos)[0])
         if value != self.draft.value:
             self.draft.value = value
-            self._use(self.draft.name, value, False)
+            self.use(self.draft.name, value, False)
 
     def _up(self, pos: tuple[int, int]) -> None:
         press, self._press = self._press, None
@@ -281,7 +286,7 @@ class Panel(Silent):
     def _activate(self, place: Place, at: tuple[int, int]) -> None:
         control = place.control
         if isinstance(control, Heading):
-            self._toggle(control)
+            self.toggle(control.name)
             return
         parts = parts_of(control, place.rect, self.stage.renderer.type)
         if isinstance(control, (Slider, Stepper, TextField)) and parts.box.collidepoint(at):
@@ -290,7 +295,7 @@ class Panel(Silent):
             return
         value = pressed(control, parts, at)
         if value is not None:
-            self._use(control.name, value, True)
+            self.use(control.name, value, True)
 
     # -- keyboard --
 
@@ -315,14 +320,14 @@ class Panel(Silent):
         self.stage.focus.go(control.name, True)
         if isinstance(control, Heading):
             if control.open != asked.value:
-                self._toggle(control)
+                self.toggle(control.name)
         elif asked.edits:
             self._begin_edit(control)  # a first sign comes as text, after its key
         elif isinstance(control, Slider) and not asked.done:
             self.draft = Draft(control.name, float(asked.value), by_mouse=False)
-            self._use(control.name, asked.value, False)
+            self.use(control.name, asked.value, False)
         else:
-            self._use(control.name, asked.value, True)
+            self.use(control.name, asked.value, True)
         return True
 
     def _key_of_edit(self, edit: Edit, event: pygame.event.Event) -> bool:
@@ -355,17 +360,20 @@ class Panel(Silent):
         """Hand over what was typed, if anything was."""
         edit, self.edit = self.edit, None
         if edit is not None and edit.changed:
-            self._use(edit.name, edit.text, True)
+            self.use(edit.name, edit.text, True)
 
     def _finish_draft(self) -> None:
         draft, self.draft = self.draft, None
         if draft is not None:
-            self._use(draft.name, draft.value, True)
+            self.use(draft.name, draft.value, True)
 
-    def _toggle(self, heading: Heading) -> None:
-        self.folded ^= {heading.name}
+    def toggle(self, section: str) -> None:
+        """Fold a section, or unfold it."""
+        self.folded ^= {section}
+        self.stage.redraw(True)
 
-    def _use(self, name: str, value: Value, done: bool) -> None:
+    def use(self, name: str, value: Value, done: bool) -> None:
+        """A control got a value, as a section has it."""
         owner = name.partition("/")[0]
         for section in self.sections:
             if section.name == owner:

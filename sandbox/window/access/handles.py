@@ -1,0 +1,58 @@
+"""Handles as sliders: one along the line that a handle can slide on, or one to the right and one upwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from sandbox.draw.widgets.scale import shown
+from sandbox.session.frame import Frame, HandleState
+from sandbox.window.access.node import Do, Node, Number, changes
+from sandbox.window.canvas.arrows import STEP, Arrows
+from sandbox.window.focus import CANVAS
+from sandbox.words import words
+
+Go = Callable[[str], None]
+
+
+def nodes_of_handle(handle: HandleState, frame: Frame, arrows: Arrows, go: Go) -> Iterator[Node]:
+    """They tell where the body is [R], and lead it as the arrow keys do, or to a place."""
+    x0, y0, x1, y1 = frame.bounds
+    name, title = f"{CANVAS}/{handle.name}", words.say(handle.label)
+    if handle.axis is None:
+        yield _along((1.0, 0.0), (x0, x1), f"{name}/x", f"{title}, x", handle, arrows, go)
+        yield _along((0.0, 1.0), (y0, y1), f"{name}/y", f"{title}, y", handle, arrows, go)
+    else:
+        place, far = _place(handle, handle.axis), max(x1 - x0, y1 - y0)
+        yield _along(handle.axis, (place - far, place + far), name, title, handle, arrows, go)
+
+
+def _place(handle: HandleState, axis: tuple[float, float]) -> float:
+    return handle.x * axis[0] + handle.y * axis[1]
+
+
+def _along(
+    axis: tuple[float, float],
+    ends: tuple[float, float],
+    name: str,
+    title: str,
+    handle: HandleState,
+    arrows: Arrows,
+    go: Go,
+) -> Node:
+    place = _place(handle, axis)
+
+    def lead_to(to: float) -> None:
+        go(f"{CANVAS}/{handle.name}")
+        by = to - place
+        arrows.lead_to(handle, handle.x + by * axis[0], handle.y + by * axis[1])
+
+    def lead(by: float) -> None:
+        go(f"{CANVAS}/{handle.name}")
+        arrows.lead(handle, by * axis[0], by * axis[1])
+
+    number = Number(round(place, 3), round(ends[0], 3), round(ends[1], 3), STEP)
+    does: dict[str, Do] = {"FOCUS": lambda _: go(f"{CANVAS}/{handle.name}")}
+    does |= changes(number, lead_to)
+    does |= {"INCREMENT": lambda _: lead(STEP), "DECREMENT": lambda _: lead(-STEP)}
+    about = f"[R] {words.HAND_KEYS}"
+    return Node(name, "SLIDER", title, f"{shown(place)} R", about, number, does=does)

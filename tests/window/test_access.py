@@ -1,0 +1,361 @@
+"""The window as a screen reader has it: a tree of what is shown, what can be done with it, and what is said."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pygame
+import pytest
+
+from sandbox.session.commands import Change, Grab, Move, Protocol
+from sandbox.session.history import Event
+from sandbox.window.access import reader as reader_module
+from sandbox.window.access.node import ROOT, Node
+from sandbox.window.access.reader import SAFE, Reader
+from sandbox.window.access.speech import Speech
+from sandbox.window.access.tree import Tree
+from sandbox.words import language, words
+from tests.window.desk import Desk
+
+NU = "grains/regular_poisson_ratio"
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    place = Desk((1024, 720))
+    place.start()
+    place.app.panel.folded.clear()
+    place.app.tick()
+    yield place
+    place.app.close()
+
+
+def seen(desk: Desk) -> Tree:
+    return Tree(desk.app.reader.parts)
+
+
+def do(desk: Desk, name: str, action: str = "CLICK", value: object = None) -> None:
+    """As a screen reader asks for it."""
+    seen(desk).nodes[name].does[action](value)
+    desk.app.tick()
+
+
+def pages(desk: Desk) -> Iterator[tuple[str, Tree]]:
+    """All that can be shown."""
+    app = desk.app
+    yield "run", seen(desk)
+    app.panel.fold()
+    app.tick()
+    yield "folded", seen(desk)
+    app.panel.fold()
+    app.tick()
+    app.brush.take(True)
+    app.inspector.look(3)
+    app.guide.start("intruder")
+    desk.until(lambda: bool(app.stage.picture.panes()))
+    app.tick()
+    yield "tour", seen(desk)
+    app.guide.close()
+    desk.key(pygame.K_e)
+    yield "question", seen(desk)
+    desk.key(pygame.K_ESCAPE)
+    desk.key(pygame.K_h)
+    yield "help", seen(desk)
+    desk.key(pygame.K_h)
+    app.pages.open_menu()
+    app.tick()
+    yield "menu", seen(desk)
+
+
+def test_everything_that_is_shown_has_a_name_and_a_place_in_the_tree(desk: Desk) -> None:
+    for code in language.available():
+        language.use(code)
+        for page, tree in pages(desk):
+            told = {ROOT}
+            for node in tree.nodes.values():
+                assert node.label or node.text, (code, page, node)
+                assert (node.label or node.text)[0] not in "▶⏸⏭◉○×›", (code, page, node)
+                assert len(set(node.children)) == len(node.children), (page, node)
+                told |= set(node.children)
+            assert told == set(tree.nodes), page
+            assert tree.focus in tree.nodes, page
+        desk.app.stage.start("intruder")
+        desk.until(lambda: not desk.app._splash and bool(desk.app.stage.picture.panes()))
+
+
+def test_every_stop_of_the_keyboard_is_in_the_tree(desk: Desk) -> None:
+    tree = seen(desk)
+    for stop in desk.app.stage.focus.stops():
+        found = [name for name in tree.nodes if name == stop or name.startswith(f"{stop}/")]
+        assert found, stop
+        tree.nodes[found[0]].does["FOCUS"](None)
+        assert desk.app.stage.focus.name == stop
+        focus = seen(desk).focus
+        assert focus.startswith(stop), (focus, stop)
+
+
+def test_controls_tell_what_they_are(desk: Desk) -> None:
+    nodes = seen(desk).nodes
+    slider = nodes[NU]
+    assert (slider.role, slider.label) == ("SLIDER", words.parameter_name("regular_poisson_ratio"))
+    assert slider.number is not None
+    assert (slider.number.value, slider.number.low, slider.number.high) == (0.8, 0.0, 0.99)
+    assert nodes["general/seed"].role == "SPIN_BUTTON"
+    assert nodes["looks/chains"].role == "SWITCH"
+    assert nodes["general/drive"].on is False
+    assert nodes["general/reset"].on is None
+    assert nodes["general/redo"].enabled is False
+    assert nodes["general/redo"].does == {}
+    assert [nodes[name].on for name in nodes["general/packing"].children] == [False, False, True]
+    assert nodes["time/play"].label in (words.PAUSE, words.PLAY)
+    strength = nodes["hand/hand_strength"]
+    assert strength.about.startswith("[k R] ")
+    desk.app.stage.focus.go("general/packing", True)
+    assert seen(desk).focus == "general/packing#mixed"
+
+
+def test_what_is_asked_of_a_control_is_done(desk: Desk) -> None:
+    do(desk, NU, "SET_VALUE", 0.5)
+    desk.until(lambda: Change("regular_poisson_ratio", 0.5) in desk.session.commands)
+    do(desk, NU, "INCREMENT")
+    desk.until(lambda: Change("regular_poisson_ratio", 0.51) in desk.session.commands)
+    do(desk, "general/seed", "SET_VALUE", 7.0)
+    desk.until(lambda: Change("seed", 7) in desk.session.commands)
+    do(desk, "general/drive")
+    desk.until(lambda: Protocol(True) in desk.session.commands)
+    desk.until(lambda: seen(desk).nodes["general/drive"].on is True)
+    do(desk, "general/view#pressure")
+    assert desk.app.stage.renderer.view.name == "pressure"
+    do(desk, "looks/chains")
+    assert seen(desk).nodes["looks/chains"].on is desk.app.stage.renderer.chains
+    do(desk, "grains", "COLLAPSE")
+    desk.app.tick()
+    assert NU not in seen(desk).nodes
+    do(desk, "grains", "EXPAND")
+    desk.app.tick()
+    assert NU in seen(desk).nodes
+    do(desk, "files/name", "SET_VALUE", "mine")
+    desk.app.tick()
+    assert seen(desk).nodes["files/name"].text == "mine"
+
+
+def test_a_handle_is_led_and_goes_where_it_is_told(desk: Desk) -> None:
+    """One that goes anywhere is a slider to the right and one upwards."""
+    x = "canvas/intruder/x"
+    before = seen(desk).nodes[x].number
+    assert before is not None
+    do(desk, x, "INCREMENT")
+    moved = [done for done in desk.session.commands if isinstance(done, Move)]
+    desk.until(lambda: any(isinstance(done, Move) for done in desk.session.commands))
+    moved = [done for done in desk.session.commands if isinstance(done, Move)]
+    assert moved[0].x == pytest.approx(before.value + 0.25, abs=1e-3)
+    assert Grab("intruder") in desk.session.commands
+    assert seen(desk).focus == x
+    do(desk, x, "SET_VALUE", before.value + 5.0)
+    desk.until(
+        lambda: (
+            (desk.session.commands[-1].x if isinstance(desk.session.commands[-1], Move) else 0.0)
+            == pytest.approx(before.value + 5.0, abs=0.3)
+        )
+    )
+
+
+def test_the_menu_leads_to_a_scene_and_the_help_closes(desk: Desk) -> None:
+    desk.app.pages.open_menu()
+    desk.app.tick()
+    do(desk, "keys")
+    assert seen(desk).focus == "help/close"
+    do(desk, "help/close")
+    assert seen(desk).focus.startswith("scene/")
+    do(desk, "packing/regular")
+    assert seen(desk).nodes["packing/regular"].on is True
+    do(desk, "scene/couette", "FOCUS")
+    assert seen(desk).focus == "scene/couette"
+    do(desk, "scene/couette")
+    desk.until(lambda: desk.page() == "run" and bool(desk.app.stage.picture.panes()))
+    assert desk.session.scene == "couette"
+
+
+def test_the_export_question_is_answered(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: list[int] = []
+    monkeypatch.setattr(desk.app.question, "answer", given.append)
+    desk.key(pygame.K_e)
+    do(desk, "question/1")
+    assert given == [1]
+
+
+# -- what is said --
+
+
+def test_notices_and_events_are_said_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    stage = desk.app.stage
+    speech = Speech(stage, desk.app.guide)
+    stage.toast("before anybody listened")
+    speech.begin()
+    assert list(speech.new()) == []
+    for text in ("one", "two", "two"):
+        stage.toast(text)
+    assert list(speech.new()) == ["one", "two", "two"]
+    ((frame, camera, rect),) = stage.picture.panes()
+    event = Event("clog", 3, 0.1, 1.0, "the grains have locked up")
+    pane = replace(frame, events=(*frame.events, event)), camera, rect
+    monkeypatch.setattr(stage.picture, "panes", lambda: (pane,))
+    assert list(speech.new()) == [event.text]
+    assert list(speech.new()) == []
+
+
+def test_a_lesson_says_what_comes_next(desk: Desk) -> None:
+    speech = Speech(desk.app.stage, desk.app.guide)
+    speech.begin()
+    desk.app.guide.start("intruder")
+    page = desk.app.guide.page
+    said = list(speech.new())
+    assert page.say in said
+    assert page.do in said or not page.do
+    desk.app.guide.next()
+    later = list(speech.new())
+    assert desk.app.guide.page.why in later or desk.app.guide.page.say in later
+    assert page.say not in later
+
+
+# -- the way to AccessKit --
+
+
+class FakeAdapter:
+    """Keeps what is sent."""
+
+    def __init__(self, come: Callable[[], Any], ask: Callable[[Any], None], leave: Any) -> None:
+        self.come, self.ask, self.leave = come, ask, leave
+        self.updates: list[Any] = []
+        self.focused: list[bool] = []
+
+    def update_if_active(self, update: Callable[[], Any]) -> None:
+        self.updates.append(update())
+
+    def update_window_focus_state(self, has_it: bool) -> None:
+        self.focused.append(has_it)
+
+
+class FakeNode:
+    """Takes everything."""
+
+    def __init__(self, role: str) -> None:
+        self.role = role
+        self.told: dict[str, object] = {}
+
+    def __getattr__(self, name: str) -> Callable[..., None]:
+        return lambda *values: self.told.update({name: values[0] if values else True})
+
+
+class Names:
+    """Role.SLIDER is "SLIDER"."""
+
+    def __getattr__(self, name: str) -> str:
+        return name
+
+
+@pytest.fixture
+def accesskit(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """The library, as far as it is used."""
+    fake = SimpleNamespace(
+        unix=SimpleNamespace(Adapter=FakeAdapter),
+        Node=FakeNode,
+        TreeUpdate=lambda focus: SimpleNamespace(focus=focus, nodes=[], tree=None),
+        Tree=lambda root: SimpleNamespace(root=root, toolkit_name=""),
+        Rect=lambda *edges: edges,
+        Role=Names(),
+        Action=Names(),
+        Live=Names(),
+        Toggled=Names(),
+    )
+    monkeypatch.setattr(reader_module, "accesskit", fake)
+    monkeypatch.setattr(reader_module.sys, "platform", "linux")  # type: ignore[attr-defined]
+    return fake
+
+
+def test_nothing_is_sent_before_it_is_safe_and_then_only_what_has_changed(
+    desk: Desk, accesskit: SimpleNamespace
+) -> None:
+    reader = Reader(desk.app.reader.parts)
+    adapter = reader._adapter
+    reader.tick(1e9)
+    assert adapter.updates == []  # nobody listens
+    first = adapter.come()
+    assert [number for number, _ in first.nodes] == [first.focus]
+    now = reader._since
+    reader.tick(now + 0.5 * SAFE)
+    assert adapter.updates == []
+    reader.tick(now + 1.1 * SAFE)
+    (whole,) = adapter.updates
+    assert len(whole.nodes) == len(seen(desk).nodes)
+    by_name = {node.told["set_author_id"]: node.told for _, node in whole.nodes}
+    assert by_name[NU]["set_numeric_value"] == 0.8
+    assert by_name["general/drive"]["set_toggled"] == "FALSE"
+    reader.tick(now + 1.1 * SAFE + 0.01)  # too soon to look again
+    reader.tick(now + 1.0)  # nothing new
+    assert len(adapter.updates) == 1
+    desk.app.stage.renderer.set_view("pressure")
+    desk.app.tick()
+    reader.tick(now + 2.0)
+    changed = {node.told["set_author_id"] for _, node in adapter.updates[1].nodes}
+    assert {"general/view#kind", "general/view#pressure"} <= changed
+    assert len(changed) < 5
+    desk.app.stage.toast("something")
+    reader.tick(now + 3.0)
+    (live,) = [n.told for _, n in adapter.updates[2].nodes if "set_live" in n.told]
+    assert live["set_value"] == "something"
+    adapter.leave()
+    desk.app.stage.renderer.set_view("kind")
+    reader.tick(now + 4.0)
+    assert len(adapter.updates) == 3
+    adapter.come()
+    reader.tick(reader._since)
+    reader.tick(reader._since + 1.1 * SAFE)
+    assert len(adapter.updates[3].nodes) >= len(whole.nodes)  # all of it, for another one
+
+
+def test_requests_are_done_and_those_that_come_too_late_are_not(
+    desk: Desk, accesskit: SimpleNamespace
+) -> None:
+    reader = Reader(desk.app.reader.parts)
+    reader._adapter.come()
+    now = reader._since + 1.0
+    reader.tick(now)
+    ids = dict(reader._ids)
+
+    def ask(name: str, action: str, data: object = None) -> None:
+        reader._adapter.ask(SimpleNamespace(target=ids[name], action=action, data=data))
+
+    ask(NU, "SET_VALUE", ("NUMERIC_VALUE", 0.3))
+    ask("general/redo", "CLICK")  # not enabled
+    ask("general/reset", "EXPAND")  # no such thing
+    reader._adapter.ask(SimpleNamespace(target=10**6, action="CLICK", data=None))
+    reader.tick(now + 0.2)
+    desk.until(lambda: bool(desk.session.commands))
+    assert desk.session.commands == [Change("regular_poisson_ratio", 0.3)]
+
+
+def test_while_nobody_listens_nothing_is_looked_at(
+    desk: Desk, accesskit: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(reader_module, "Tree", never)
+    reader = Reader(desk.app.reader.parts)
+    for now in range(100):
+        reader.tick(float(now))
+    reader.watch(pygame.event.Event(pygame.WINDOWFOCUSGAINED))
+    assert reader._adapter.focused == [True]
+
+
+def test_without_the_extra_there_is_nothing(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader_module, "accesskit", None)
+    reader = Reader(desk.app.reader.parts)
+    reader.watch(pygame.event.Event(pygame.WINDOWFOCUSLOST))
+    reader.tick(1.0)
+    assert reader._adapter is None
+    assert isinstance(seen(desk).nodes[ROOT], Node)
