@@ -168,6 +168,12 @@ def test_the_ends_of_runs_are_shown_and_run_for_again(
     desk.until(lambda: not page.explorer.progress.at_work)
     assert sorted(again) == [cell.row for cell in page.explorer.progress.cells]
     assert not page.explorer.progress.unseen
+    # What is seen at once comes before what is new.
+    page._forget()
+    again.clear()
+    fill(desk, seeds=3)
+    assert sorted(again[:4]) == [cell.row for cell in page.explorer.progress.cells]
+    assert sorted(again[4:]) == [9, 10, 11, 12]
 
 
 def test_the_end_that_is_kept_is_that_of_the_run_that_opens() -> None:

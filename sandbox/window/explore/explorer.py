@@ -119,6 +119,11 @@ class Explorer:
                 tell()
                 due = time.monotonic() + EVERY
 
+        def unseen() -> list[Job]:
+            """Runs that are wanted again, for how they ended."""
+            rows = [c.row for c in self.progress.cells if c.row not in ends.frames]
+            return [tables.request.job(row) for row in rows] if self.pictures else []
+
         tell()
         missing = [job for job in tables.request.jobs() if job.row not in tables.runs]
         jobs = max(cores() - 1, 1)
@@ -126,13 +131,11 @@ class Explorer:
             with Pool(jobs) as pool:
                 gate.open(pool)
                 # A run that fails leaves its cell with fewer; it is tried again when the folder is gone on with.
-                batch = Batch(carry_out_gently, missing, done, lambda _job, _reason: None)
+                runs = [*unseen(), *missing]
+                batch = Batch(carry_out_gently, runs, done, lambda _job, _reason: None)
                 carry_out_all(batch, gate, jobs, len(tables.runs))
                 tell()
-                if self.pictures:
-                    rows = [c.row for c in self.progress.cells if c.row not in ends.frames]
-                    again = [tables.request.job(row) for row in rows]
-                    carry_out_all(replace(batch, runs=again), gate, jobs)
+                carry_out_all(replace(batch, runs=unseen()), gate, jobs)
         except KeyboardInterrupt:
             pass  # it was closed
         tell()

@@ -177,9 +177,9 @@ class ExplorePage:
     def show_ends_or_shares(self) -> None:
         """How runs ended in place of shares, or the other way about; ends that nobody has kept are run for again."""
         self.explorer.pictures = not self.explorer.pictures
-        progress = self.explorer.progress
-        if self.explorer.pictures and progress.unseen and not progress.at_work:
-            self.go_or_stop()
+        if self.explorer.pictures and self.explorer.progress.unseen:
+            request = self.request()
+            self.explorer.begin(request, self.folder(request))
 
     def _cell_at(self, values: tuple[Value, ...] | None) -> MapCell | None:
         """What is known of the cell with those values."""
