@@ -25,6 +25,8 @@ import numba
 from numba.core.caching import NullCache
 from platformdirs import user_cache_path
 
+from core.errors import reason_of
+
 log = logging.getLogger(__name__)
 
 PREFIX = "kernels-"
@@ -84,7 +86,7 @@ def _usable(where: Path) -> bool:
         where.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=where).close()
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+        reason = reason_of(error)
         log.warning(
             "compiled code cannot be kept in %s (%s): every start compiles it anew", where, reason
         )

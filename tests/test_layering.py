@@ -107,7 +107,7 @@ ROOMS = {
     "studies.clogging": f"sweep studies.classics {STUDY}",
     "studies.bench": f"sweep {STUDY}",
     "studies.hand": f"lessons {STUDY}",
-    "studies.common": "ensemble core",
+    "studies.common": "ensemble files core",
     "ensemble": "core",
     "lessons": "files words session scenes core",
     "files": "session scenes core",

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-from core.errors import InputError, did_you_mean
+from core.errors import InputError, did_you_mean, reason_of
 from core.files import clear, followed, try_writing
 from sandbox.files.pipes import hold
 
@@ -163,7 +163,7 @@ def output_file(option: str, text: str, suffixes: Sequence[str]) -> Path:
             raise
         raise InputError(f"{option} {text!r}: this is no file name ({error})") from None
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+        reason = reason_of(error)
         raise InputError(f"{option} {text}: cannot be written ({reason})") from None
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write, clear
 
 
@@ -22,7 +22,7 @@ def prepare_folder(text: str, inside: str = "runs") -> Path:
         clear(folder)
         clear(folder / inside)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+        reason = reason_of(error)
         raise InputError(f"--out {text}: cannot write there ({reason})") from error
     return folder
 
@@ -38,5 +38,5 @@ def write_bytes(path: Path, content: bytes) -> None:
         with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
+        reason = reason_of(error)
         raise InputError(f"cannot write {path}: {reason}") from error

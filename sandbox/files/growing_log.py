@@ -12,7 +12,7 @@ import threading
 from pathlib import Path
 from typing import BinaryIO
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import followed, is_special
 from sandbox.files.log_file import last_line, lines_of, write_log
 from sandbox.files.pipes import with_reader
@@ -81,7 +81,7 @@ class GrowingLog:
             held = ""
             if self._written is not None and self._in_place():
                 held = f"; it holds the run up to increment {self._written.end}"
-            raise InputError(f"{self.path}: {error.strerror or error}{held}") from error
+            raise InputError(f"{self.path}: {reason_of(error)}{held}") from error
         finally:
             self._release()
 
@@ -134,7 +134,7 @@ class GrowingLog:
             try:
                 self.write()
             except OSError as error:
-                reason = (error.strerror or str(error)).lower()
+                reason = reason_of(error)
                 if not self.trouble:
                     log.warning("%s cannot be written now: %s", self.path, reason)
                 self.trouble = reason

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write, followed, is_special
+from sandbox.files.lines import append
 from sandbox.files.pipes import with_reader
 from sandbox.interrupts import deferred
 
@@ -161,8 +162,8 @@ class GrowingTable:
                 self._begin(now)
             for number, (packing, table) in enumerate(now):
                 begin, end = self._written[number][0], len(table)
-                if begin < end:
-                    self._append(self._spelling.lines(_named(packing, now, table, begin)))
+                if begin < end and self._file is not None:
+                    append(self._file, self._spelling.lines(_named(packing, now, table, begin)))
                     self._written[number] = end, table[end - 1]
                     self.rows += end - begin
         except OSError as error:
@@ -184,17 +185,6 @@ class GrowingTable:
         self._header = _table(now).header()
         self._written = [(len(table), table[len(table) - 1]) for _, table in now]
         self.rows = sum(len(table) for _, table in now)
-
-    def _append(self, lines: bytes) -> None:
-        """Add whole lines, or nothing."""
-        assert self._file is not None
-        size = os.fstat(self._file.fileno()).st_size
-        try:
-            while lines:  # a disk that has room for a part takes that
-                lines = lines[self._file.write(lines) :]
-        except OSError:
-            self._file.truncate(size)
-            raise
 
     def _close(self) -> None:
         if self._file is not None:
@@ -218,5 +208,5 @@ def _not_written(path: str | os.PathLike[str], error: OSError, rows: int = 0) ->
     kept = "; the earlier file was kept" if Path(path).is_file() else ""
     if rows:
         kept = f"; it holds the first {rows} rows"
-    reason = (error.strerror or str(error)).lower()
+    reason = reason_of(error)
     return InputError(f"cannot write {path}: {reason}{kept}")

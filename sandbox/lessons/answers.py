@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from core.arrays import Floats
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from sandbox.files.lines import append_lines
 from sandbox.lessons.lesson import Lesson, Predict, Step
 from sandbox.session.frame import Frame
@@ -85,7 +85,7 @@ class Answers:
         except InputError as error:
             self.trouble = str(error)
         except OSError as error:
-            self.trouble = f"cannot write {self.path}: {(error.strerror or str(error)).lower()}"
+            self.trouble = f"cannot write {self.path}: {reason_of(error)}"
         else:
             self._waiting.clear()
             self.trouble = ""

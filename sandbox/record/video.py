@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core import files
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write
 from sandbox.files.pipes import with_reader
 from sandbox.interrupts import deferred
@@ -256,7 +256,7 @@ def _why_not_writable(folder: Path) -> str | None:
             file.flush()
             os.fsync(file.fileno())
     except OSError as error:
-        return f"{(error.strerror or str(error)).lower()} in {folder}"
+        return f"{reason_of(error)} in {folder}"
     return None
 
 

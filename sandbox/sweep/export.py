@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write
 from sandbox.extras import require
 from sandbox.sweep.tables import AVALANCHES, RUNS
@@ -26,6 +26,4 @@ def write_parquet(folder: Path) -> None:
             with atomic_write(path) as file:
                 parquet.write_table(csv.read_csv(os.fspath(folder / name)), file)
         except OSError as error:
-            raise InputError(
-                f"cannot write {path}: {(error.strerror or str(error)).lower()}"
-            ) from error
+            raise InputError(f"cannot write {path}: {reason_of(error)}") from error

@@ -19,7 +19,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import is_special
 from sandbox import __version__
 from sandbox.ensemble.machine import machine
@@ -58,7 +58,7 @@ def read_request(folder: Path) -> Request:
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except OSError as error:
-        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        raise InputError(f"{path}: {reason_of(error)}") from None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise InputError(f"{path}: damaged ({error!r})") from None
     if key != request.key():
@@ -102,7 +102,7 @@ class Tables:
         except Timeout:
             raise InputError(f"{folder}: another program is at work on this sweep") from None
         except OSError as error:
-            reason = (error.strerror or str(error)).lower()
+            reason = reason_of(error)
             raise InputError(f"{folder / LOCK}: {reason}") from None
         self._run_columns = list(columns(request.scene))
         self._avalanche_columns = [*AVALANCHE, *(axis.name for axis in request.axes)]
@@ -171,7 +171,7 @@ def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
     except FileNotFoundError:
         return []
     except OSError as error:
-        raise InputError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+        raise InputError(f"{path}: {reason_of(error)}") from None
     whole = text[: text.rfind("\n") + 1]
     try:
         rows = list(csv.reader(io.StringIO(whole, newline="")))

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pygame
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write
 from sandbox.words import words
 
@@ -151,7 +151,7 @@ def save_picture(surface: pygame.Surface, stem: str) -> str:
         with atomic_write(path) as file:
             file.write(picture.getvalue())
     except OSError as error:
-        return words.NOT_SAVED.format(name=path.name, reason=error.strerror or str(error))
+        return words.NOT_SAVED.format(name=path.name, reason=reason_of(error))
     return words.SAVED.format(name=path.name)
 
 

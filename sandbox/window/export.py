@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pygame
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import atomic_write
 from sandbox.draw.marks import marks
 from sandbox.draw.painter import Painter
@@ -42,7 +42,7 @@ def export(frames: Sequence[Frame], kept: Sequence[Kept], spelling: Spelling = P
         with atomic_write(f"{stem}.png") as file:
             file.write(picture.getvalue())
     except OSError as error:
-        return words.NOT_SAVED.format(name=f"{stem}.png", reason=error.strerror or str(error))
+        return words.NOT_SAVED.format(name=f"{stem}.png", reason=reason_of(error))
     return words.EXPORTED.format(name=stem)
 
 

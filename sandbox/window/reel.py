@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from core.errors import reason_of
 from core.files import atomic_write
 from sandbox.player.tape import Tape, Thinning
 from sandbox.session.frame import Frame
@@ -66,5 +67,5 @@ class Reel(Silent):
             with atomic_write(Path(name)) as file:
                 file.write(page(tape, look).encode())
         except OSError as error:
-            return words.NOT_SAVED.format(name=name, reason=error.strerror or str(error))
+            return words.NOT_SAVED.format(name=name, reason=reason_of(error))
         return words.SAVED.format(name=name)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pygame
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from sandbox.draw.render import Renderer
 from sandbox.files import preferences
 from sandbox.files.autosave import Leftover
@@ -150,7 +150,7 @@ class Stage:
         try:
             preferences.write(self.preferences)
         except OSError as error:
-            reason = error.strerror or str(error)
+            reason = reason_of(error)
             self.toast(words.NOT_SAVED.format(name=preferences.path().name, reason=reason))
         self.dirty = True
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Protocol, Self
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from core.files import followed, is_special
 from sandbox.files.pipes import with_reader
 from sandbox.files.trajectories.arrays import Arrays
@@ -90,6 +90,4 @@ class Trajectory:
 
     def _failed(self, error: OSError) -> InputError:
         kept = "; the earlier file was kept" if self.path.is_file() else ""
-        return InputError(
-            f"cannot write {self.path}: {(error.strerror or str(error)).lower()}{kept}"
-        )
+        return InputError(f"cannot write {self.path}: {reason_of(error)}{kept}")

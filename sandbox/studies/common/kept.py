@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from sandbox.interrupts import deferred
+from sandbox.files.lines import append_lines
 
 
 def keep(path: Path, key: str, row: Mapping[str, Any]) -> None:
@@ -21,9 +21,8 @@ def read(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def add(path: Path, line: Mapping[str, Any]) -> None:
-    """Add a line, whole or not at all."""
-    with deferred(), path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(line, ensure_ascii=False) + "\n")
+    """Add a line, whole or not at all. Raises InputError if that cannot be."""
+    append_lines(path, json.dumps(line, ensure_ascii=False) + "\n")
 
 
 def lines(path: Path) -> Iterator[dict[str, Any]]:

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from core.errors import InputError
+from core.errors import InputError, reason_of
 from sandbox.files.autosave import Autosave, Leftover
 from sandbox.files.growing_log import GrowingLog
 from sandbox.files.scene_file import read_scene, write_scene
@@ -185,7 +185,7 @@ class Panes:
         try:
             write_scene(path, made)
         except OSError as error:
-            raise InputError(f"{os.fspath(path)}: {error.strerror or error}") from error
+            raise InputError(f"{os.fspath(path)}: {reason_of(error)}") from error
 
     def _begin(self, wanted: Wanted, kinds: Sequence[str], sessions: Sequence[Session]) -> None:
         """Leave what runs, and begin with these."""
