@@ -204,6 +204,7 @@ class App:
         """Handle what has happened, draw if there is something new, wait for the next picture."""
         for event in pygame.event.get():
             self.handle(event)
+        self.reader.tick(time.perf_counter())
         stage = self.stage
         if not stage.running:
             return
@@ -223,7 +224,6 @@ class App:
         if said := stage.recorder.tick(stage.renderer.surface, now):
             stage.toast(said)
         stage.dirty |= stage.recorder.second_passed(now)
-        self.reader.tick(now)
         stage.tone.follow(snapshot.frame if stage.parts_now() else None, now)
         moving = self._splash or stage.picture.moving or stage.mouse.holding
         if stage.dirty or moving or now - self._drawn >= REST:

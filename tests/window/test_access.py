@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import SimpleNamespace
@@ -19,6 +20,7 @@ from sandbox.window.access.speech import Speech
 from sandbox.window.access.tree import Tree
 from sandbox.words import language, words
 from tests.window.desk import Desk
+from tests.window.fake_session import FakeSession
 
 NU = "grains/regular_poisson_ratio"
 
@@ -336,6 +338,30 @@ def test_requests_are_done_and_those_that_come_too_late_are_not(
     reader.tick(now + 0.2)
     desk.until(lambda: bool(desk.session.commands))
     assert desk.session.commands == [Change("regular_poisson_ratio", 0.3)]
+
+
+def test_another_scene_can_begin_by_request(
+    desk: Desk, accesskit: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between two pictures, as by a key: nothing is drawn of what is no more, nor of what is not there yet."""
+    built, build = threading.Event(), FakeSession.build
+
+    def slowly(self: FakeSession, progress: Any = None) -> None:
+        built.wait(20.0)
+        build(self, progress)
+
+    monkeypatch.setattr(FakeSession, "build", slowly)
+    desk.app.pages.open_menu()
+    reader = desk.app.reader = Reader(desk.app.reader.parts)
+    reader._adapter.come()
+    desk.until(lambda: bool(reader._sent))
+    request = SimpleNamespace(target=reader._ids["scene/couette"], action="CLICK", data=None)
+    reader._adapter.ask(request)
+    desk.until(lambda: desk.session.scene == "couette")
+    for _ in range(5):
+        desk.app.tick()
+    built.set()
+    desk.until(lambda: "canvas" in reader._sent)
 
 
 def test_while_nobody_listens_nothing_is_looked_at(

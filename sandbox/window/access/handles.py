@@ -22,8 +22,10 @@ def nodes_of_handle(handle: HandleState, frame: Frame, arrows: Arrows, go: Go) -
         yield _along((1.0, 0.0), (x0, x1), f"{name}/x", f"{title}, x", handle, arrows, go)
         yield _along((0.0, 1.0), (y0, y1), f"{name}/y", f"{title}, y", handle, arrows, go)
     else:
-        place, far = _place(handle, handle.axis), max(x1 - x0, y1 - y0)
-        yield _along(handle.axis, (place - far, place + far), name, title, handle, arrows, go)
+        x, y = handle.axis
+        axis = (-x, -y) if (y if abs(y) > abs(x) else x) < 0.0 else (x, y)  # more: right, or up
+        place, far = _place(handle, axis), max(x1 - x0, y1 - y0)
+        yield _along(axis, (place - far, place + far), name, title, handle, arrows, go)
 
 
 def _place(handle: HandleState, axis: tuple[float, float]) -> float:

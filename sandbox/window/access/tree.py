@@ -187,7 +187,7 @@ class Tree:
                 title = page.options[index]
                 nodes.append(Node(name, "RADIO_BUTTON", title, on=on, does=does))
             elif name == FIELD and page.field is not None:
-                does |= {"SET_VALUE": lambda value: guide.asking.edit.write(str(value))}
+                does |= {"SET_VALUE": self._fill}
                 title = f"{page.ask} [{page.field.unit}]" if page.field.unit else page.ask
                 nodes.append(Node(name, "TEXT_INPUT", title, text=page.field.text, does=does))
             elif name in guide.titles:
@@ -195,6 +195,12 @@ class Tree:
             else:
                 nodes.append(Node(name, "CANVAS", page.ask, about=page.hint, does=does))
         self._group("tour", "GROUP", f"{page.title}, {step}", nodes, rect=edges(guide.rect))
+
+    def _fill(self, value: object) -> None:
+        """The number that a lesson asks for."""
+        edit = self._parts.guide.asking.edit
+        edit.select_all()
+        edit.write(str(value))
 
     def _canvas(self, frames: list[Frame]) -> None:
         """What runs: status and force of every packing; and the handles, for the arrow keys and as sliders."""

@@ -42,6 +42,10 @@ class Edit:
         """From which character to before which."""
         return min(self.caret, self.anchor), max(self.caret, self.anchor)
 
+    def select_all(self) -> None:
+        """What is written next replaces all of it."""
+        self.anchor, self.caret = 0, len(self.text)
+
     def write(self, text: str) -> None:
         """In place of what is selected, as far as there is room; what cannot be printed is left out."""
         start, end = self.selected
@@ -78,7 +82,7 @@ class Edit:
     def _command(self, letter: str) -> None:
         start, end = self.selected
         if letter == "a":
-            self.anchor, self.caret = 0, len(self.text)
+            self.select_all()
         elif letter in "cx" and start < end:
             with contextlib.suppress(pygame.error):  # no clipboard
                 pygame.scrap.put_text(self.text[start:end])
