@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay, sweep, bench, study, site.
+"""The command line: list, play, record, replay, sweep, bench, study, site, lesson.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -113,6 +113,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         _add_bench,
         _add_study,
         _add_site,
+        _add_lesson,
     ):
         add(command)
     return parser, commands
@@ -292,6 +293,25 @@ def _add_site(command: Command) -> None:
     )
 
 
+def _add_lesson(command: Command) -> None:
+    lesson = command(
+        "lesson",
+        verbs.lesson,
+        "Write a lesson for paper: worksheets, and aims, plan and answers for the teacher, beside the lesson itself. "
+        "Without a name: print which lessons there are.",
+    )
+    lesson.add_argument(
+        "name",
+        nargs="?",
+        metavar="NAME",
+        help="one that the program brings along, or a file LESSON.toml",
+    )
+    lesson.add_argument(
+        "--out", metavar="DIR", help="folder for the pages, which any browser prints"
+    )
+    _add_language(lesson, "all in which the lesson is written")
+
+
 def _add_scene_options(parser: Parser) -> None:
     parser.add_argument(
         "--packing",
@@ -361,7 +381,6 @@ def _add_size(
 
 
 def _add_look(parser: Parser, language_default: str = "en") -> None:
-    from sandbox.words import language
     from sandbox.words.words import VIEWS
 
     parser.add_argument(
@@ -378,12 +397,17 @@ def _add_look(parser: Parser, language_default: str = "en") -> None:
         metavar="NAME",
         help="dark (default), or light for a bright room",
     )
+    _add_language(parser, language_default)
+
+
+def _add_language(parser: Parser, default: str) -> None:
+    from sandbox.words import language
+
     parser.add_argument(
         "--language",
         type=argument(arguments.one_of(*language.available())),
         metavar="NAME",
-        help=f"of the words in the picture: {', '.join(language.available())} "
-        f"(default: {language_default})",
+        help=f"of the words in the picture: {', '.join(language.available())} (default: {default})",
     )
 
 

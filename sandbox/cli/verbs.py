@@ -232,6 +232,32 @@ def site(options: argparse.Namespace) -> int:
     return OK
 
 
+def lesson(options: argparse.Namespace) -> int:
+    """Write a lesson's pages, or say which lessons there are."""
+    from sandbox.lessons import classroom, sheets
+
+    if options.name is None:
+        if options.out:
+            raise InputError(f"--out needs a lesson: {arguments.any_of(classroom.names())}")
+        for name in classroom.names():
+            found = classroom.lesson(name)
+            print(f"{name}: {found.title} ({found.minutes} minutes)")
+        return OK
+    found = classroom.named(options.name)
+    if options.out is None:
+        raise InputError(f"nothing to write: give --out DIR, or write play {options.name}")
+    from sandbox.files.folder import prepare_folder
+
+    folder = prepare_folder(options.out, "")
+    source = (
+        classroom.path_of(options.name) if options.name in classroom.names() else Path(options.name)
+    )
+    codes = (options.language,) if options.language else ()
+    for path in [sheets.copy_lesson(source, folder), *sheets.write_sheets(found, folder, codes)]:
+        print(path)
+    return OK
+
+
 def _output(
     options: argparse.Namespace, size: tuple[int, int], fps: float, every: int = 1
 ) -> Output | None:

@@ -27,17 +27,19 @@ def _place(name: str) -> tuple[int, str]:
 
 @cache
 def lesson(name: str) -> Lesson:
-    """One of them. Raises InputError for one that there is not."""
-    if name not in names():
-        raise InputError(
-            f"no lesson {name!r}{did_you_mean(name, names())}; there are: {', '.join(names())}"
-        )
+    """One of them."""
     return read_lesson(path_of(name))
 
 
 def named(name: str) -> Lesson:
     """One of them by its name, or that of a file. Raises InputError for what is neither, or is malformed."""
-    return lesson(name) if name in names() else read_lesson(name)
+    if name in names():
+        return lesson(name)
+    if not Path(name).suffix and not Path(name).exists():
+        raise InputError(
+            f"no lesson {name!r}{did_you_mean(name, names())}; there are: {', '.join(names())}"
+        )
+    return read_lesson(name)
 
 
 def path_of(name: str) -> Path:

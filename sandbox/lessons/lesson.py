@@ -83,6 +83,7 @@ class Predict:
         1.0,
     )  # of a sketch: along low, high; up low, high
     answer: Said = Said()
+    names: tuple[Said, Said] = (Said(), Said())  # of the axes, along and up, for paper
 
     def is_right(self, given: float) -> bool | None:
         """Is that the right option or number? None where nothing is."""
@@ -152,6 +153,9 @@ class Lesson:
             if step.predict is not None:
                 yield f"{step.key} ask", step.predict.ask
                 yield f"{step.key} answer", step.predict.answer
+                yield from (
+                    (f"{step.key} axis {n}", name) for n, name in enumerate(step.predict.names, 1)
+                )
                 yield from (
                     (f"{step.key} option {n}", o) for n, o in enumerate(step.predict.options, 1)
                 )

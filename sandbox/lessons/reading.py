@@ -251,7 +251,7 @@ def _predict(table: Taken) -> Predict:
     answer = table.said("answer", LONG, optional=True)
     options: tuple[Said, ...] = ()
     right: float | None = None
-    within, unit, axes = 0.0, "", (0.0, 1.0, 0.0, 1.0)
+    within, unit, axes, names = 0.0, "", (0.0, 1.0, 0.0, 1.0), (Said(), Said())
     if kind == "choice":
         options = table.each(
             "options", MOST_OPTIONS, lambda value, at: said_of(value, LINE, at), least=2
@@ -264,8 +264,12 @@ def _predict(table: Taken) -> Predict:
         unit = table.text("unit", MOST_UNIT, "")
     else:
         axes = (*_range(table, "along"), *_range(table, "up"))
-    table.end()
-    return Predict(kind, ask, options, right, within, unit, axes, answer)
+        names = (
+            table.said("along_name", TITLE, optional=True),
+            table.said("up_name", TITLE, optional=True),
+        )
+    table.end("; what belongs to the step stands above [step.predict]")
+    return Predict(kind, ask, options, right, within, unit, axes, answer=answer, names=names)
 
 
 def _range(table: Taken, key: str) -> tuple[float, float]:

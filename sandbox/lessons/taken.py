@@ -35,12 +35,12 @@ class Taken:
             raise InputError(f"{self.at(key)} is missing; add it")
         return default
 
-    def end(self) -> None:
-        """Raise InputError if a key is left that nobody has asked for."""
+    def end(self, hint: str = "") -> None:
+        """Raise InputError if a key is left that nobody has asked for; ``hint`` is what else may have been meant."""
         for key in self._left:
             near = did_you_mean(key, self._asked)
             known = near or f"; there are: {', '.join(self._asked)}"
-            raise InputError(f"{self.at(shown(key))}: nobody knows this key{known}")
+            raise InputError(f"{self.at(shown(key))}: nobody knows this key{known}{hint}")
 
     def at(self, key: str) -> str:
         """A key of this table, for a message."""

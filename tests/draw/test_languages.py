@@ -9,11 +9,12 @@ import pygame
 import pytest
 
 from sandbox.draw.pages.help_page import draw_help
-from sandbox.draw.pages.tour_card import TourPage, card_layout, draw_tour_card
+from sandbox.draw.pages.tour_card import Field, TourPage, card_layout, draw_tour_card
 from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
 from sandbox.draw.views import VIEWS
-from sandbox.lessons import tours
+from sandbox.lessons import classroom, tours
+from sandbox.lessons.lesson import Lesson
 from sandbox.window.menu import Menu
 from sandbox.words import language, words
 from tests.draw.frames import hopper_frame, intruder_frame
@@ -81,22 +82,51 @@ def test_the_page_of_keys(
             assert {key, meaning} <= {content for content, _ in texts}
 
 
+def pages_of(lesson: Lesson) -> Iterator[tuple[str, TourPage, tuple[str, ...]]]:
+    """What the card shows in each step while it asks and when it has told all, and the texts on it."""
+    title = str(lesson.title) or words.title(lesson.scene)
+    for index, step in enumerate(lesson.steps):
+        say, do, why = str(step.say), str(step.do), str(step.why)
+        predict, count = step.predict, len(lesson.steps)
+        if predict is not None:
+            options, ask = tuple(map(str, predict.options)), str(predict.ask)
+            field = Field("1234,5", predict.unit) if predict.kind == "number" else None
+            hint = words.ASK_SKETCH if predict.kind == "sketch" else ""
+            asking = TourPage(
+                title,
+                index,
+                count,
+                say,
+                onward=words.ASK_KEEP,
+                ask=ask,
+                options=options,
+                field=field,
+                hint=hint,
+            )
+            yield step.key, asking, (say, ask, hint, *options)
+            longest = max((*options, "1234 k R"), key=len)
+            said = words.ASK_SAID.format(given=longest), words.ASK_RATHER.format(right=longest)
+            why = " ".join(part for part in (*said, str(predict.answer), why) if part)
+        told = TourPage(title, index, count, say, do, True, why, words.TOUR_NEXT)
+        yield step.key, told, (say, do, why)
+
+
+LESSONS = [
+    *(tours.tour(scene) for scene in tours.scenes()),
+    *map(classroom.lesson, classroom.names()),
+]
+
+
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_cards_of_tours_fit_above_the_panel(
-    texts: list[tuple[str, pygame.Rect]], scale: float
-) -> None:
+def test_cards_fit_above_the_panel(texts: list[tuple[str, pygame.Rect]], scale: float) -> None:
     size = (round(1280 * scale), round(720 * scale))
     renderer = Renderer(size, scale)
-    for scene in tours.scenes():
-        steps = tours.steps(scene)
-        for index, step in enumerate(steps):
-            say, do, why = str(step.say), str(step.do), str(step.why)
-            page = TourPage(
-                words.title(scene), index, len(steps), say, do, True, why, words.TOUR_NEXT
-            )
+    for lesson in LESSONS:
+        assert lesson is not None
+        for key, page, written_there in pages_of(lesson):
             width = round(CARD * scale)
             height = card_layout(page, Type(scale), width).height
-            assert height < 0.7 * size[1], (scene, step.key)
+            assert height < 0.7 * size[1], (lesson.name, key)
             painter = renderer.painter()
             texts.clear()
             card = pygame.Rect(10, 10, width, height)
@@ -105,6 +135,6 @@ def test_cards_of_tours_fit_above_the_panel(
             nothing_cut(texts, size)
             # Numbers stay with their units.
             written = " ".join(content for content, _ in texts).replace("\u00a0", " ")
-            assert all(part in written for part in (say, do, why))
+            assert all(part in written for part in written_there)
             for content, place in texts:
-                assert card.contains(place), (scene, step.key, content)
+                assert card.contains(place), (lesson.name, key, content)

@@ -53,7 +53,7 @@ def test_a_number_is_right_within_its_tolerance() -> None:
 
 def test_a_sketch_has_axes() -> None:
     ask = '[step.predict]\nkind = "sketch"\nask = "Draw."\nalong = [0, 2]\nup = [-1, 4.5]\n'
-    predict = parse_lesson("mine", (HEAD + STEP + ask).encode(), "").steps[0].predict
+    predict = parse_lesson("mine", (HEAD + STEP + PULL + ask).encode(), "").steps[0].predict
     assert predict is not None
     assert (predict.axes, predict.is_right(1.0)) == ((0.0, 2.0, -1.0, 4.5), None)
 
@@ -125,6 +125,8 @@ MISTAKES = [
     (WHOLE + "within = 3\n", "predict 'within': nobody knows this key"),
     (WHOLE.replace("choice", "sketch").replace('options = ["this", "that"]', "along = [2, 1]\nup = [0, 1]"), "lower one first"),
     (WHOLE.replace("choice", "sketch").replace('options = ["this", "that"]', "along = [2]\nup = [0, 1]"), "has 1 entries"),
+    (HEAD + STEP + '[step.predict]\nkind = "sketch"\nask = "Draw."\nalong = [0, 2]\nup = [0, 1]', "until is missing: it says when"),
+    (WHOLE + 'why = "So."', r"predict 'why': nobody knows this key.*stands above \[step.predict\]"),
     (WHOLE.replace("[[step]]", 'hide = ["frction"]\n[[step]]'), r"hide 1 'frction' is none of .*mean friction"),
     (WHOLE.replace("[[step]]", 'task = 4\n[[step]]'), "task must be a list"),
     (WHOLE + '[[task]]\ntext = "Why?"\n', "task 1 answer is missing"),

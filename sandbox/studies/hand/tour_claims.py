@@ -18,7 +18,7 @@ import numpy as np
 from core import observables
 from core.relaxation import FAILED
 from sandbox.lessons import tours
-from sandbox.lessons.lesson import Condition, Step
+from sandbox.lessons.lesson import Condition, Lesson, Step
 from sandbox.lessons.moments import Moment, met
 from sandbox.session.commands import Change, Command, DrawWall, Grab, Move, Place, Release
 from sandbox.session.frame import Frame
@@ -300,10 +300,22 @@ TENDENCIES = frozenset({("couette", "ratio")})  # said of most packings, not of 
 
 def play(scene: str, seed: int, check: Callable[[], None] = lambda: None) -> list[dict[str, Any]]:
     """Every step of a scene's tour: whether it could be done, in how many increments, which claims hold, what broke."""
+    found = tours.tour(scene)
+    return [] if found is None else play_lesson(found, seed, CLAIMS, check)
+
+
+def play_lesson(
+    lesson: Lesson,
+    seed: int,
+    claims_of: Mapping[tuple[str, str], Mapping[str, Claim]],
+    check: Callable[[], None] = lambda: None,
+) -> list[dict[str, Any]]:
+    """The same for any lesson, with claims by its name and the key of a step."""
     panes: dict[str, Pane] = {}
     told = []
-    for step in tours.steps(scene):
+    for index, step in enumerate(lesson.steps):
         if step.packings:
+            scene = lesson.scene_of(index)
             sessions = [Session(scene, kind, seed, dict(step.settings)) for kind in step.packings]
             for session in sessions:
                 session.build()
@@ -312,7 +324,7 @@ def play(scene: str, seed: int, check: Callable[[], None] = lambda: None) -> lis
             pane.since, pane.before = len(pane.session.history) - 1, pane.session.frame()
             pane.forces.clear()
         increments = _do(step, panes, check)
-        claims = CLAIMS.get((scene, step.key), {})
+        claims = claims_of.get((lesson.name, step.key), {})
         reasons = {
             str(reason)
             for pane in panes.values()
