@@ -142,7 +142,7 @@ def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:
         scene=scene.name,
         steps=tuple(steps),
         title=top.said("title", TITLE, optional=True),
-        about=top.said("about", CARD, optional=True),
+        about=top.said("about", LINE, optional=True),
         minutes=top.whole("minutes", 1, MOST_MINUTES, 0),
         seed=top.whole("seed", 0, LARGEST_SEED, None),
         aims=top.each("aims", MOST_AIMS, lambda value, at: said_of(value, PRINTED, at)),

@@ -125,7 +125,7 @@ MISTAKES = [
     (WHOLE + "within = 3\n", "predict 'within': nobody knows this key"),
     (WHOLE.replace("choice", "sketch").replace('options = ["this", "that"]', "along = [2, 1]\nup = [0, 1]"), "lower one first"),
     (WHOLE.replace("choice", "sketch").replace('options = ["this", "that"]', "along = [2]\nup = [0, 1]"), "has 1 entries"),
-    (HEAD + STEP + '[step.predict]\nkind = "sketch"\nask = "Draw."\nalong = [0, 2]\nup = [0, 1]', "until is missing: it says when"),
+    (HEAD + STEP + '[step.predict]\nkind = "sketch"\nask = "Draw."\nalong = [0, 2]\nup = [0, 1]', "until is missing: it says"),
     (WHOLE + 'why = "So."', r"predict 'why': nobody knows this key.*stands above \[step.predict\]"),
     (WHOLE.replace("[[step]]", 'hide = ["frction"]\n[[step]]'), r"hide 1 'frction' is none of .*mean friction"),
     (WHOLE.replace("[[step]]", 'task = 4\n[[step]]'), "task must be a list"),

@@ -145,7 +145,8 @@ def _draw_card(
     room = card_text_width(type_, rect.width, side)
     tour = places.scrolled.get(TOUR + card.name.removeprefix(SCENE))
     head = room - (tour.width if tour and not side else 0)
-    lines = [(type_.shortened(card.title, HEADING, head, bold=True), HEADING, True, theme.text)]
+    size = HEADING if type_.width(card.title, HEADING, bold=True) <= head else BODY
+    lines = [(type_.shortened(card.title, size, head, bold=True), size, True, theme.text)]
     question = type_.wrapped(card.question, BODY, room)
     lines += [
         (line, BODY, False, theme.text) for line in _cut(painter, question, QUESTION_LINES, room)

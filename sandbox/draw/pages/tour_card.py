@@ -135,8 +135,9 @@ def draw_tour_card(
     places = card_layout(page, type_, rect.width)
     close = places.buttons[CLOSE].move(rect.topleft)
     room = close.left - rect.left - pad - round(4 * scale)
-    title = type_.shortened(page.title, HEADING, room, bold=True)
-    painter.text(title, rect.left + pad, rect.top + pad + head // 2, size=HEADING, bold=True)
+    size = HEADING if type_.width(page.title, HEADING, bold=True) <= room else BODY
+    title = type_.shortened(page.title, size, room, bold=True)
+    painter.text(title, rect.left + pad, rect.top + pad + head // 2, size=size, bold=True)
     lowest = rect.top + places.buttons[NEXT].top
     for index in range(len(page.options)):
         name = f"{OPTION}{index}"
