@@ -7,6 +7,7 @@ that can be played is offered.
 
 from __future__ import annotations
 
+import itertools
 import logging
 import os
 import re
@@ -109,8 +110,8 @@ def lock(descriptor: int) -> None:
 def clear(folder: Path, name: str | None = None) -> list[Path]:
     """Remove the hidden files that killed programs have left there, of all files or of one. What cannot be removed stays.
 
-    A film that its encoder has brought to an end all the same is no longer hidden, but ``NAME.unfinished.mp4``, unless there is
-    such a file; these are returned. What becomes of films is said, in one line each.
+    A film that its encoder has brought to an end all the same is no longer hidden, but ``NAME.unfinished.mp4``, or with the next
+    number that is free, ``NAME.unfinished-2.mp4``; these are returned. What becomes of films is said, in one line each.
     """
     start = None if name is None else hidden(folder / name, "").name[1 : -len(".00000000.")]
     return _clear(folder, lambda found: start is None or found == start)
@@ -141,8 +142,8 @@ def _clear_if_dead(path: Path, name: str, kind: str) -> list[Path]:
     with path.open("rb") as file:
         # Raises OSError where somebody has it.
         fcntl.flock(file.fileno(), fcntl.LOCK_EX | fcntl.LOCK_NB)
-        visible = path.with_name(f"{Path(name).stem}.unfinished.mp4")
-        if kind == "part.mp4" and _is_film(file) and not visible.exists():
+        if kind == "part.mp4" and _is_film(file):
+            visible = _free_name(path, f"{Path(name).stem}.unfinished")
             path.rename(visible)
             log.warning("what a program that was killed had filmed is now %s", visible)
             return [visible]
@@ -150,6 +151,13 @@ def _clear_if_dead(path: Path, name: str, kind: str) -> list[Path]:
         if kind != "tmp":
             log.warning("removed half a film, %s, of a program that was killed", path.name)
     return []
+
+
+def _free_name(beside: Path, stem: str) -> Path:
+    """The first of ``STEM.mp4``, ``STEM-2.mp4``, … that nothing has."""
+    names = itertools.chain([stem], (f"{stem}-{number}" for number in itertools.count(2)))
+    paths = (beside.with_name(f"{name}.mp4") for name in names)
+    return next(path for path in paths if not os.path.lexists(path))
 
 
 def _is_film(file: BinaryIO) -> bool:

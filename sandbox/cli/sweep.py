@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError
@@ -107,7 +108,7 @@ def sweep(options: argparse.Namespace) -> int:
     try:
         return _carried_out(options, folder, request)
     except KeyboardInterrupt:  # before or after the runs
-        there = f": python -m sandbox sweep {folder} goes on from there"
+        there = f": python -m sandbox sweep {quote(str(folder))} goes on from there"
         there = there if is_sweep(str(folder)) else ": nothing was written"
         print(f"stopped{there}", file=sys.stderr)
         return INTERRUPTED
@@ -129,14 +130,17 @@ def _carried_out(options: argparse.Namespace, folder: Path, request: Request) ->
     print(summary.as_text(request, found))
     if not whole:
         done = f"stopped after {len(tables.runs)} of {request.runs} runs"
-        print(f"{done}: python -m sandbox sweep {folder} goes on from there", file=sys.stderr)
+        print(
+            f"{done}: python -m sandbox sweep {quote(str(folder))} goes on from there",
+            file=sys.stderr,
+        )
         return INTERRUPTED
     if options.parquet:
         export.write_parquet(folder)
     if options.pictures or options.players:
         print(f"page: {_draw(folder, request, found, options.players)}")
     print(
-        f"tables: {folder / 'runs.csv'}, avalanches.csv; a run: python -m sandbox play {folder}#ROW"
+        f"tables: {folder / 'runs.csv'}, avalanches.csv; a run: python -m sandbox play {quote(str(folder))}#ROW"
     )
     return FAILED if any(cell.outcomes["failed"] for cell in found) else OK
 
@@ -184,6 +188,6 @@ def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
         there = read_request(folder)
         if there.key() != request.key() or there.seeds[1] > request.seeds[1]:
             raise InputError(
-                f"--out {folder}: another sweep is there; give another folder, or go on with: sweep {folder}"
+                f"--out {folder}: another sweep is there; give another folder, or go on with: sweep {quote(str(folder))}"
             )
     return folder, request

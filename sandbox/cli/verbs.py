@@ -458,8 +458,9 @@ def _summary(session: Session, outcome: Outcome) -> str:
     forces = session.history.column("resisting")[1:]
     unfinished = sum(str(reason) != "converged" for reason in reasons)
     mean = float(forces.mean()) if len(forces) else 0.0
+    frames = f"{counted(outcome.frames, 'frame')}, " if outcome.frames else ""
     return (
-        f"{counted(outcome.frames, 'frame')}, {counted(len(reasons), 'increment')} "
+        f"{frames}{counted(len(reasons), 'increment')} "
         f"({unfinished or 'none'} did not converge), "
         f"mean {session.frame().curve_label}: {mean:.4g}, state {session.state_hash()}"
     )

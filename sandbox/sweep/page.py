@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -102,7 +103,7 @@ def _grid(folder: Path, request: Request, some: Sequence[Cell], players: Mapping
 def _cell(folder: Path, cell: Cell, players: Mapping[int, str]) -> str:
     row = cell.example
     number = int(row["row"])
-    command = f"play {folder}#{number}"
+    command = f"play {shlex.quote(str(folder))}#{number}"
     where = players.get(number)
     what = (
         f"<code>{escape(command)}</code>"

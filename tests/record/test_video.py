@@ -359,3 +359,9 @@ def test_a_killed_program_leaves_the_earlier_file_and_offers_its_own(
     assert sorted(tmp_path.iterdir()) == [path, unfinished]
     assert len(frames_of(unfinished)) == 20
     assert "film.unfinished.mp4" in caplog.text
+    # Another one, and a third: none takes the place of one that is there.
+    film = unfinished.read_bytes()
+    for number in (2, 3):
+        (tmp_path / part.name).write_bytes(film)
+        assert files.clear(tmp_path, path.name) == [tmp_path / f"film.unfinished-{number}.mp4"]
+    assert [p.read_bytes() for p in tmp_path.glob("film.unfinished*")] == [film] * 3

@@ -6,12 +6,14 @@ import csv
 import json
 import os
 import re
+import shlex
 import signal
 import subprocess
 import sys
 import time
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -266,6 +268,23 @@ def test_a_page_shows_the_cells_and_how_to_open_a_run_of_each(
     for name in re.findall(r'<img src="(.+?)"', page):
         assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     assert page.count("<img") == 2  # three avalanches a cell are too few for the third
+
+
+@pytest.mark.usefixtures("in_threads")
+def test_commands_that_are_printed_can_be_typed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    folder = tmp_path / "a folder & more"
+    assert cli.main(["sweep", *WORDS, "--pictures", "--out", str(folder)]) == 0
+    said = capsys.readouterr().out
+    typed = shlex.split(said.partition("a run: ")[2])
+    assert typed == ["python", "-m", "sandbox", "play", f"{folder}#ROW"]
+    codes = re.findall(r"<code>(.+?)</code>", (folder / "index.html").read_text())
+    assert shlex.split(unescape(codes[0])) == ["play", f"{folder}#1"]
+    assert cli.main(["sweep", "gravity_hopper", "--out", str(folder)]) == 2
+    again = capsys.readouterr().err.partition("go on with: ")[2]
+    assert shlex.split(again) == ["sweep", str(folder)]
 
 
 @pytest.mark.usefixtures("in_threads")

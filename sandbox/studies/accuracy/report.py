@@ -59,9 +59,9 @@ def statement(summary: Summary) -> str:
     cost = f"in {milliseconds(default['increment'])} ms an increment"
     means = [row for row in summary["beyond"] if row["tolerance"] == default["tolerance"]]
     if summary["against"] == "path" or not means:
-        return f"force within {percent(default['force'])} {cost}"
+        return f"root mean square error of the force {percent(default['force'])}, {cost}"
     off = percent(abs(means[0]["shift"]))
-    return f"mean force within {off}, each within {percent(default['force'])}, {cost}"
+    return f"mean force within {off}, root mean square error of each {percent(default['force'])}, {cost}"
 
 
 def as_table(statements: Mapping[str, str], estimates: Estimates) -> str:
