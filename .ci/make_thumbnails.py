@@ -13,7 +13,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[1]
 FOLDER = REPOSITORY / "assets" / "thumbnails"
 LARGEST = 15_000  # bytes
-COLOURS = (96, 64, 48, 32)  # as many as fit into that
+COLOURS = (96, 64, 48, 32, 24)  # as many as fit into that
 
 # Settings, and increments of the scripted drive, that show what a scene is about.
 HOPPER = {"grains": 90, "width": 15.0, "orifice": 2.0}
@@ -31,7 +31,8 @@ SCENES: dict[str, tuple[dict[str, object], int]] = {
     "workshop": ({"grains": 60, "width": 24.0, "height": 20.0}, 120),
 }
 PACKINGS = {"hopper-regular": "regular", "hopper-auxetic": "auxetic"}  # all others are mixed
-SMALLEST = 12.0  # side of what is shown of a large scene [R]
+WHOLE = 18.0  # side of a cell that is shown as a whole [R]
+SMALLEST = 12.0  # side of what is shown of a larger one [R]
 
 
 def main(names: list[str]) -> None:
@@ -66,7 +67,7 @@ def cropped(frame):
     if frame.box is None:  # walls that rise high above the grains
         ymin = max(ymin, float((frame.y - frame.p).min()) - 2.0)
         ymax = min(ymax, float((frame.y + frame.p).max()) + 4.0)
-    elif ymax - ymin > SMALLEST:
+    elif ymax - ymin > WHOLE:
         ymin, xmax = ymax - SMALLEST, xmin + SMALLEST
     return replace(frame, bounds=(xmin, ymin, xmax, ymax))
 

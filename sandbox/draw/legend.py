@@ -14,8 +14,8 @@ from sandbox.draw import raster
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, HEADING, SMALL
-from sandbox.draw.theme import AUXETIC, REGULAR, magnitude_colours, mix
-from sandbox.draw.world import Look
+from sandbox.draw.theme import magnitude_colours, mix
+from sandbox.draw.world import Look, grain_colours
 from sandbox.session.frame import Frame
 from sandbox.words import words
 
@@ -113,10 +113,10 @@ def _kind(painter: Painter, look: Look, kind: str, name: str) -> Part:
     radius, gap = SYMBOL * scale, 7.0 * scale
 
     def draw(x: float, y: float) -> None:
-        colour = AUXETIC if kind == "auxetic" else REGULAR
+        fills = grain_colours(theme, look.recede)  # as they are on the canvas
+        colour, rim = fills[2:] if kind == "auxetic" else fills[:2]
         if look.values is not None:  # the view's colours mean something else
-            colour = theme.soft_text
-        rim = mix(colour, 0x000000, 0.38)
+            colour, rim = theme.soft_text, mix(theme.soft_text, 0x000000, 0.38)
         zero, one = np.zeros(1), np.ones(1)
         marked = np.full(1, kind == "auxetic")
         grain = ((x + radius) * one, -y * one, radius * one, zero, zero)

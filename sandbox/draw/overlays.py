@@ -17,14 +17,17 @@ from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
 from sandbox.draw.text import BODY, HEADING, SMALL
 from sandbox.draw.theme import HAND, magnitude_colours, mix
+from sandbox.draw.world import Look
 from sandbox.session.frame import Frame, HandleState
 from sandbox.words.words import FORCE_UNIT
 
 CHAIN_WIDTH = 0.62  # of the largest chain, in reference radii [R]
 CHAIN_MOST = 13.0  # and never wider than this at scale 1 [px]
-SLIM = 0.6  # plain chains are narrower by this: the grains are what the view is about
-CHAIN_RIM = 1.0  # round plain chains at scale 1 [px]
-FADE_FROM, FADE_TO = 0.3, 1.0  # of the mean force: where chains begin to show, and show fully
+FADE = 0.3, 1.0  # of the mean force: where chains begin to show, and show fully
+# Over grains that keep their colours chains are narrower and fewer, with a rim of ground colour at scale 1 [px].
+SLIM = {"kinds": 0.8, "values": 0.6}
+FADE_OVER_GRAINS = 0.6, 1.0
+CHAIN_RIM = 0.6
 FAINT_FROM, FAINT_TO = 0.004, 0.06  # and the same of the scale's top
 KNOB = 11.0  # radius of the handle's knob at scale 1 [px]
 ARROW_LONGEST = 96.0  # arrow of a force at the top of its scale, at scale 1 [px]
@@ -36,11 +39,11 @@ def draw_chains(
     camera: Camera,
     frame: Frame,
     top: float,
-    plain: bool = False,
+    look: Look,
 ) -> None:
     """A line along every contact: width by the root of the force, colour by the force.
 
-    ``plain``: the colour says something else in this view, so the lines have that of the text.
+    Where colour says something else in this view, the lines have that of the text.
     """
     contacts = frame.contacts
     force = floats(contacts.force)
@@ -48,10 +51,12 @@ def draw_chains(
     if not carrying.size:
         return
     mean = float(carrying.mean())
+    alone, plain = look.view.only_chains, look.values is not None
+    fade_from, fade_to = FADE if alone else FADE_OVER_GRAINS
     with np.errstate(invalid="ignore"):
         share = np.clip(force / top, 0.0, 1.0)
         alpha = np.minimum(
-            np.clip((force / mean - FADE_FROM) / (FADE_TO - FADE_FROM), 0.0, 1.0),
+            np.clip((force / mean - fade_from) / (fade_to - fade_from), 0.0, 1.0),
             np.clip((force / top - FAINT_FROM) / (FAINT_TO - FAINT_FROM), 0.0, 1.0),
         )
     order = np.argsort(share, kind="stable")  # the strongest on top
@@ -68,11 +73,12 @@ def draw_chains(
     canvas = painter.canvas(cell_rect(rect, camera, frame.box), camera.transform)
     width = widest * np.sqrt(share[order])
     theme = painter.theme
-    if plain:  # slim, with a rim of ground colour that sets them off from grains of any colour
-        width *= SLIM
+    if not alone:
+        width *= SLIM["values" if plain else "kinds"]
         ground = np.full(order.size, theme.ground, dtype=np.uint32)
         rim = width + CHAIN_RIM * painter.scale
         raster.draw_lines(canvas, (x0, y0, x1, y1), rim, ground, alpha[order])
+    if plain:
         colours = np.full(order.size, theme.text, dtype=np.uint32)
     else:
         colours = magnitude_colours(theme, share[order])

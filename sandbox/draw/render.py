@@ -233,7 +233,7 @@ class Renderer:
         draw_grains(painter, rect, camera, frame, look)
         draw_bodies(painter, rect, camera, frame)
         if chain_top is not None:
-            draw_chains(painter, rect, camera, frame, chain_top, look.values is not None)
+            draw_chains(painter, rect, camera, frame, chain_top, look)
         draw_squeezed(painter, rect, camera, frame)
         draw_cell(painter, rect, camera, frame)
 

@@ -1,7 +1,8 @@
 """Colours: a dark theme, a light one for projectors, and the colour map for magnitudes.
 
 Kinds carry Paul Tol's "vibrant" colours, which people with any common colour blindness can tell
-apart (https://personal.sron.nl/~pault/). Magnitudes use cividis (Nunez, Anderton and Renslow 2018,
+apart (https://personal.sron.nl/~pault/); grains have them lighter and darker, so that kinds differ from the back row too, where a
+grain is a dot, and for those who see no red. Magnitudes use cividis (Nunez, Anderton and Renslow 2018,
 doi:10.1371/journal.pone.0199239; table CC0). A colour is an integer 0xRRGGBB.
 """
 
@@ -55,6 +56,8 @@ class Theme:
     wall: int
     piston: int
     intruder: int
+    regular: int  # grains: the colours of the kinds, as far apart in lightness as the ground allows
+    auxetic: int
     good: int  # lamps
     working: int
     bad: int
@@ -71,6 +74,8 @@ DARK = Theme(
     wall=0x59636B,
     piston=0x8B959D,
     intruder=0xB4BDC4,
+    regular=0x006BAA,
+    auxetic=0xF588AF,
     good=0x3DBE6C,
     working=0xF2B632,
     bad=0xF0533A,
@@ -87,6 +92,8 @@ LIGHT = Theme(
     wall=0xA3A9AE,
     piston=0x7C858C,
     intruder=0x59636B,
+    regular=0x00477F,
+    auxetic=0xEE4C86,
     good=0x1E8A4A,
     working=0xC98300,
     bad=0xC7300F,
@@ -114,6 +121,11 @@ def mix(first: int, second: int, share: float) -> int:
     parts = zip(channels(first), channels(second), strict=True)
     red, green, blue = (round(a + (b - a) * share) for a, b in parts)
     return red << 16 | green << 8 | blue
+
+
+def kind_colour(theme: Theme, kind: str) -> int:
+    """The colour of regular or of auxetic grains."""
+    return theme.auxetic if kind == "auxetic" else theme.regular
 
 
 def packing_colour(packing: str) -> int:

@@ -14,14 +14,12 @@ from sandbox.draw import raster
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter, floats
 from sandbox.draw.periodic import cell_rect, images
-from sandbox.draw.theme import AUXETIC, EVENT, REGULAR, Theme, mix
+from sandbox.draw.theme import EVENT, Theme, mix
 from sandbox.draw.views import KIND, View
 from sandbox.session.frame import BodyShape, Frame
 
 OUTLINE = 1.5  # width on screen at scale 1 [px]
-FADED = 0.35  # how far grains recede into the ground when force chains are shown
-LARGE = 20.0  # reference radius on screen from which grains recede less [px]
-SHADOW = 0.85  # how far they recede where the chains are all that is shown
+SHADOW = 0.85  # how far grains recede into the ground where the chains are all that is shown
 TOOTH_FROM = 9.0  # below this radius on screen a made grain has no tooth [px]
 GOLDEN = 0.6180339887498949  # multiples of it, whole parts left out, never repeat and never cluster
 SPIN_FROM = 11.0  # below this mean radius on screen a radius line would only be noise [px]
@@ -35,6 +33,11 @@ class Look:
     chains: bool = False  # are force chains drawn over the grains?
     values: Floats | None = None
     top: float = 1.0
+
+    @property
+    def recede(self) -> float:
+        """How far the grains recede into the ground."""
+        return SHADOW if self.view.only_chains else 0.0
 
 
 def mark_openness(p: Floats, q1: Floats, q2: Floats, rest_radius: Floats) -> Floats:
@@ -51,8 +54,9 @@ def outline_width(painter: Painter, camera: Camera) -> float:
 
 def grain_colours(theme: Theme, recede: float) -> tuple[int, int, int, int]:
     """Fill and outline of regular grains, then of auxetic ones; ``recede`` in 0..1."""
-    fills = [mix(kind, theme.ground, recede) for kind in (REGULAR, AUXETIC)]
-    rims = [mix(mix(kind, 0x000000, 0.38), theme.ground, recede) for kind in (REGULAR, AUXETIC)]
+    kinds = theme.regular, theme.auxetic
+    fills = [mix(kind, theme.ground, recede) for kind in kinds]
+    rims = [mix(mix(kind, 0x000000, 0.38), theme.ground, recede) for kind in kinds]
     return fills[0], rims[0], fills[1], rims[1]
 
 
@@ -73,7 +77,7 @@ def draw_grains(
     )
     grains = (x, y, p, q1, q2)
     auxetic = frame.auxetic[index]
-    fill, rim = (part[index] for part in _colours(painter.theme, camera, frame, look))
+    fill, rim = (part[index] for part in _colours(painter.theme, frame, look))
     width = outline_width(painter, camera)
     turn = np.zeros(index.size) if frame.spin is None else floats(frame.spin[index])
     openness = mark_openness(p, q1, q2, rest)
@@ -113,19 +117,13 @@ def draw_grains(
 
 
 def _colours(
-    theme: Theme, camera: Camera, frame: Frame, look: Look
+    theme: Theme, frame: Frame, look: Look
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """Fill and rim of every grain, uint32 (N,)."""
     if look.values is not None:
         fill = look.view.colours(theme, look.values, look.top)
         return fill, np.full(frame.grains, mix(theme.hairline, theme.text, 0.25), dtype=np.uint32)
-    recede = 0.0
-    if look.view.only_chains:
-        recede = SHADOW
-    elif look.chains:
-        # Chains lie beside much of a large grain, but over most of a small one.
-        recede = FADED * min(LARGE / camera.scale, 1.0)
-    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(theme, recede)
+    regular_fill, regular_rim, auxetic_fill, auxetic_rim = grain_colours(theme, look.recede)
     auxetic = frame.auxetic
     return (
         np.where(auxetic, np.uint32(auxetic_fill), np.uint32(regular_fill)),

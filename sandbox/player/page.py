@@ -15,10 +15,8 @@ from sandbox.draw import views
 from sandbox.draw.event_shapes import SHAPES
 from sandbox.draw.raster import made_grains
 from sandbox.draw.theme import (
-    AUXETIC,
     EVENT,
     HAND,
-    REGULAR,
     THEMES,
     Theme,
     magnitude_colours,
@@ -155,11 +153,10 @@ def _theme(theme: Theme) -> dict[str, Any]:
         "fill": views.fill_colours(theme, share),
         "fringes": views.fringe_colours(theme, share),
     }
-    names = ("ground", "panel", "hairline", "text", "soft_text", "wall", "piston", "intruder")
+    shown = ("ground", "panel", "hairline", "text", "soft_text", "wall", "piston", "intruder")
+    names = (*shown, "regular", "auxetic")
     return {
         **{name: getattr(theme, name) for name in names},
-        "regular": REGULAR,
-        "auxetic": AUXETIC,
         "event": EVENT,
         "hand": HAND,
         "dark": theme.name == "dark",

@@ -20,10 +20,11 @@ from sandbox.draw.lamp import lamp
 from sandbox.draw.overlays import Hand
 from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
-from sandbox.draw.theme import AUXETIC, DARK, HAND, LIGHT, REGULAR, Theme, channels
+from sandbox.draw.theme import DARK, HAND, LIGHT, Theme, channels, kind_colour
 from sandbox.draw.views import VIEWS
 from sandbox.session.frame import Contacts, Frame
 from sandbox.words import words
+from tests.draw.contrast import EYES, contrast_of_light
 from tests.draw.frames import empty_frame, hopper_frame, intruder_frame
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -134,8 +135,32 @@ def test_kinds_have_their_colours(packing: str, theme: str) -> None:
     seen = {
         tuple(pixel) for pixel in canvas_of(renderer, intruder_frame(8, packing)).reshape(-1, 3)
     }
-    assert (channels(REGULAR) in seen) == (packing != "auxetic")
-    assert (channels(AUXETIC) in seen) == (packing != "regular")
+    own = renderer.theme
+    assert (channels(own.regular) in seen) == (packing != "auxetic")
+    assert (channels(own.auxetic) in seen) == (packing != "regular")
+
+
+@pytest.mark.parametrize("eyes", EYES)
+@pytest.mark.parametrize("theme", ["dark", "light"])
+@pytest.mark.parametrize("chains", [False, True])
+def test_kinds_differ_from_the_back_row(chains: bool, theme: str, eyes: str) -> None:
+    """Where all grains of a kind run together in one colour, under chains too; the legend has the very colours of the picture."""
+    light = []
+    for packing in ("regular", "auxetic"):
+        renderer = Renderer((1280, 720), theme=theme, chains=chains)
+        frame = silent(replace(intruder_frame(12, packing), handles=()))
+        image = renderer.image(frame).reshape(720, 1280, 3)
+        own = channels(kind_colour(renderer.theme, packing))
+        header, canvas = renderer.layout.header, renderer.layout.canvas
+        for rect in (header, canvas):
+            part = image[rect.top : rect.bottom, rect.left : rect.right]
+            assert (part == own).all(axis=-1).sum() > 100, (packing, rect)
+        left, top = renderer.camera.to_screen(frame.bounds[0], frame.bounds[3])
+        right, bottom = renderer.camera.to_screen(frame.bounds[2], frame.bounds[1])
+        grains = image[int(top) : int(bottom), int(left) : int(right)].reshape(-1, 3) / 255.0
+        linear = np.where(grains <= 0.04045, grains / 12.92, ((grains + 0.055) / 1.055) ** 2.4)
+        light.append(linear.mean(axis=0))
+    assert contrast_of_light(light[0], light[1], eyes) >= 1.15
 
 
 def test_auxetic_grains_can_be_told_without_colour() -> None:

@@ -20,7 +20,7 @@ from sandbox.draw.theme import (
     packing_colour,
     theme_named,
 )
-from tests.draw.contrast import contrast
+from tests.draw.contrast import EYES, contrast
 
 ALL = pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
 
@@ -42,11 +42,19 @@ def test_text_stands_out(theme: Theme) -> None:
 @ALL
 def test_grains_marks_and_lamps_stand_out(theme: Theme) -> None:
     # WCAG 2.1, 1.4.11: 3:1 for what must be seen and is no text.
-    for colour in (REGULAR, AUXETIC):
+    for colour in (theme.regular, theme.auxetic):
         assert contrast(colour, theme.ground) >= 3.0
     for colour in (theme.good, theme.bad):
         assert contrast(colour, theme.panel) >= 3.0
     assert contrast(theme.working, theme.panel) >= 2.5  # amber on white; its words are beside it
+
+
+@ALL
+@pytest.mark.parametrize("eyes", EYES)
+def test_kinds_differ_in_lightness(theme: Theme, eyes: str) -> None:
+    """Without any colour, to all eyes: once with published blue and pink it was 1.2."""
+    assert contrast(theme.regular, theme.auxetic, eyes) >= 1.7
+    assert contrast(theme.regular, theme.auxetic) >= 2.2
 
 
 def test_kinds_are_the_published_colours() -> None:

@@ -11,7 +11,7 @@ import math
 import pygame
 
 from sandbox.draw.text import BODY, TITLE, Type, page_scale
-from sandbox.draw.theme import AUXETIC, REGULAR, Theme, channels, mix
+from sandbox.draw.theme import Theme, channels, mix
 from sandbox.words import words
 
 _FINE = 4  # shapes are drawn this much larger, then shrunk: that makes their edges smooth
@@ -81,8 +81,8 @@ def _squeezed_pair(theme: Theme, size: int, seconds: float) -> pygame.Surface:
     floor = 0.93 * fine
     plate = pygame.Rect(0, 0, round(1.84 * fine), round(0.05 * fine))
     for colour, place, wide, hole in (
-        (REGULAR, 0.5, radius * (1.0 + 0.2 * squeeze), 0.0),
-        (AUXETIC, 1.5, radius * (1.0 - 0.2 * squeeze), 1.0 - squeeze),
+        (theme.regular, 0.5, radius * (1.0 + 0.2 * squeeze), 0.0),
+        (theme.auxetic, 1.5, radius * (1.0 - 0.2 * squeeze), 1.0 - squeeze),
     ):
         outer = pygame.Rect(0, 0, round(2 * wide), round(2 * half))
         outer.midbottom = (round(place * fine), round(floor))

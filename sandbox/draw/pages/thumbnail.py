@@ -36,10 +36,11 @@ def drawn(
     rect = surface.get_rect()
     painter.fill(rect, painter.theme.ground)
     camera = Camera.fit(frame.bounds, rect, margin)
-    draw_grains(painter, rect, camera, frame, Look(view_named("kind"), True))
+    look = Look(view_named("kind"), True)
+    draw_grains(painter, rect, camera, frame, look)
     draw_bodies(painter, rect, camera, frame)
     top = max(typical_largest(frame.contacts.force), LEAST_CHAIN)
-    draw_chains(painter, rect, camera, frame, top, False)
+    draw_chains(painter, rect, camera, frame, top, look)
     draw_cell(painter, rect, camera, frame)
     painter.flush()
     return surface

@@ -119,9 +119,7 @@ class Grains {
       const share = MEASURES[view.name](pane, k) / view.top;
       return [rampColour(theme.ramps[view.ramp], share), mix(theme.hairline, theme.text, 0.25)];
     }
-    let recede = 0;
-    if (view.onlyChains) recede = 0.85;
-    else if (look.chains) recede = 0.35 * Math.min((20 * look.scale) / this.camera.k, 1);
+    const recede = view.onlyChains ? 0.85 : 0;
     const kind = pane.nu[k] < 0 ? theme.auxetic : theme.regular;
     return [mix(kind, theme.ground, recede), mix(mix(kind, 0, 0.38), theme.ground, recede)];
   }

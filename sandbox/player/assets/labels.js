@@ -89,7 +89,7 @@ function kindPicture(kind) {
   const one = (value) => Float32Array.of(value);
   const pane = { count: 1, labels: [0], x: one(0), y: one(0), p: one(1), q1: one(0), q2: one(0), rest: one(1), spin: one(0), there: one(1), pointed: one(0), squeezed: one(0) };
   Object.assign(pane, { nu: one(kind === "auxetic" ? -1 : 1), bodies: [], handles: [], box: null, rubs: false, active: [[]] });
-  const shown = view().made ? run.views.find((each) => each.made) : run.views.find((each) => each.name === "kind");
+  const shown = view().valued ? run.views.find((each) => each.name === "kind") : view();
   const camera = { k: 11 * ratio, x: 12 * ratio, y: 12 * ratio };
   const scenery = new Scenery(canvas.getContext("2d"), pane, 0, camera, { theme: state.theme, view: shown, chains: false, scale: ratio });
   scenery.line = 1.5 * ratio;

@@ -64,17 +64,19 @@ class Scenery extends Grains {
     const bins = Array.from({ length: BINS }, () => []);
     for (const pair of active) bins[Math.min(Math.floor(Math.sqrt(forces[pair] / run.tops.chains) * BINS), BINS - 1)].push(pair);
     const plain = look.view.valued; // there the colour says something else
-    const widest = Math.min(0.62 * camera.k, 13 * look.scale) * (plain ? 0.6 : 1);
+    const alone = look.view.onlyChains; // else grains keep their colours under them
+    const [fadeFrom, fadeTo] = alone ? [0.3, 1] : [0.6, 1];
+    const widest = Math.min(0.62 * camera.k, 13 * look.scale) * (alone ? 1 : plain ? 0.6 : 0.8);
     const clip = (value) => Math.min(Math.max(value, 0), 1);
     g.lineCap = "round";
-    for (const rimmed of plain ? [true, false] : [false]) {
+    for (const rimmed of alone ? [false] : [true, false]) {
       bins.forEach((pairs, bin) => {
         const share = ((bin + 0.5) / BINS) ** 2;
         const force = share * run.tops.chains;
-        const alpha = Math.min(clip((force / mean - 0.3) / 0.7), clip((share - 0.004) / 0.056));
+        const alpha = Math.min(clip((force / mean - fadeFrom) / (fadeTo - fadeFrom)), clip((share - 0.004) / 0.056));
         if (!pairs.length || alpha < 0.02) return;
         g.globalAlpha = alpha;
-        g.lineWidth = widest * Math.sqrt(share) + (rimmed ? 2 * look.scale : 0);
+        g.lineWidth = widest * Math.sqrt(share) + (rimmed ? 1.2 * look.scale : 0);
         g.strokeStyle = css(rimmed ? theme.ground : plain ? theme.text : rampColour(theme.ramps.chains, share));
         for (const pair of pairs) {
           for (const [x0, y0, x1, y1] of this.contact(pair, base)) {

@@ -10,7 +10,7 @@ import pygame
 
 from sandbox.draw.camera import Camera
 from sandbox.draw.painter import Painter
-from sandbox.draw.theme import AUXETIC, REGULAR
+from sandbox.draw.theme import kind_colour
 from sandbox.draw.widgets.controls import Button, Choice, Control, Note, Option, Row, Slider
 from sandbox.draw.widgets.look import ring_colour
 from sandbox.draw.widgets.scale import typed
@@ -27,7 +27,7 @@ Point = tuple[float, float]
 
 PLACE, ERASE, RETYPE, DRAW_WALL, ERASE_WALL = "place", "erase", "retype", "draw_wall", "erase_wall"
 TOOLS = (PLACE, RETYPE, ERASE, DRAW_WALL, ERASE_WALL)
-KINDS = {"regular": REGULAR, "auxetic": AUXETIC}
+KINDS = ("regular", "auxetic")
 LEAST, MOST, USUAL = 0.5, 10.0, 2.0  # radius of the brush [R]
 APART = 2.0  # grains placed in one stroke are so far from each other [R]
 STEP = 0.5  # of the brush by keyboard, a press [R]
@@ -193,7 +193,8 @@ class Brush(Silent):
             size = max(radius * camera.scale, 4.0 * painter.scale)
             width = 2.5 * painter.scale
             painter.ring(x, y, size, width + 3.0 * painter.scale, painter.theme.ground, 0.7, rect)
-            mark = KINDS[self.kind] if self.tool in (PLACE, RETYPE) else colour
+            kind = kind_colour(painter.theme, self.kind)
+            mark = kind if self.tool in (PLACE, RETYPE) else colour
             painter.ring(x, y, size, width, mark, clip=rect)
             places = [camera.to_screen(*point) for point in line]
             for start, end in pairwise(places):
@@ -226,7 +227,8 @@ class Brush(Silent):
         ]
         controls: list[Control] = [Row(tuple(tools[:3])), Row(tuple(tools[3:]))]
         if self.tool in (PLACE, RETYPE):
-            kinds = tuple(Option(k, words.KINDS_SHORT[k], c) for k, c in KINDS.items())
+            theme = self.stage.renderer.theme
+            kinds = tuple(Option(k, words.KINDS_SHORT[k], kind_colour(theme, k)) for k in KINDS)
             controls.append(Choice("brush/kind", "", kinds, self.kind, words.BRUSH_KIND_HELP))
         if self.tool in (ERASE, RETYPE):
             controls.append(
