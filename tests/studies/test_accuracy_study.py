@@ -110,7 +110,7 @@ def test_summary_and_report(row_job: dict[str, Any]) -> None:
     assert errors == sorted(errors, reverse=True)
     assert summary["stiffness"]["error_power"] == pytest.approx(-1.0, abs=0.3)
     assert set(summary["lead"]) == {"SciPy L-BFGS-B", "paper's chart"}
-    assert statement(summary).startswith("force within ")
+    assert statement(summary).startswith("root mean square error of the force ")
     about = {"machine": machine()["machine"], "quick": True, "jobs": 1}
     text = as_markdown({"grain_row": summary}, {}, about, 0.01)
     assert "| `grain_row` | 7 |" in text
@@ -265,7 +265,7 @@ def test_quick_study_of_one_scene(tmp_path: Path) -> None:
     words = [*COMMAND, "--quick", "--scene", "single_grain", "--jobs", "1", "--out", str(out)]
     done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("single_grain      force within ")
+    assert done.stdout.startswith("single_grain      root mean square error of the force ")
     assert {"accuracy.md", "results.json", "single_grain.png", "stiffness.png"} <= {
         path.name for path in out.iterdir()
     }
