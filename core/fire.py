@@ -21,7 +21,7 @@ from core import sweeps, threads
 from core.contacts import prepare, slot_force_sum
 from core.jit import kernel
 from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
-from core.rigid_contacts import add_rigid_forces, find_rigid_pairs, image, touch
+from core.rigid_contacts import RigidTerms, add_rigid_forces, find_rigid_pairs, image, touch
 from core.slip import prepare_friction
 from core.steering import ALPHA_START, DT_START, steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
@@ -120,29 +120,45 @@ def fresh_control(dt_max: float) -> NDArray[np.void]:
 
 
 @kernel
-def relist(m, box, rigid, skin):
+def reorder(state, velocity, inverse_mass, grains, identity, order, scratch, scratch_identity):
+    """Put every per-grain array into the order of new lists."""
+    for row in range(state.shape[0]):
+        permute(state[row], order, scratch)
+        permute(velocity[row], order, scratch)
+        permute(inverse_mass[row], order, scratch)
+    permute(grains.contact_stiffness, order, scratch)
+    permute(grains.rest_area, order, scratch)
+    permute(grains.area_stiffness, order, scratch)
+    permute(grains.shape_stiffness, order, scratch)
+    permute(identity, order, scratch_identity)
+
+
+def relist(
+    m: Minimizer, box: tuple[float, ...] | None, rigid: RigidTerms | None, skin: float
+) -> int:
     """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
 
-    A kernel of its own, called between slices of ``run``: lists are rebuilt hundreds of times less often than forces.
+    Called between slices of ``run``: lists are rebuilt hundreds of times less often than forces. In pieces, each of which is
+    compiled once for scenes with these terms and without.
     """
     trouble = rebuild(m.state, m.grains.contact_stiffness, skin, m.lists, box)
     if trouble != FIT:
         return trouble
-    order = m.lists.order
-    for row in range(m.state.shape[0]):
-        permute(m.state[row], order, m.scratch)
-        permute(m.velocity[row], order, m.scratch)
-        permute(m.inverse_mass[row], order, m.scratch)
-    permute(m.grains.contact_stiffness, order, m.scratch)
-    permute(m.grains.rest_area, order, m.scratch)
-    permute(m.grains.area_stiffness, order, m.scratch)
-    permute(m.grains.shape_stiffness, order, m.scratch)
-    permute(m.identity, order, m.scratch_identity)
+    reorder(
+        m.state,
+        m.velocity,
+        m.inverse_mass,
+        m.grains,
+        m.identity,
+        m.lists.order,
+        m.scratch,
+        m.scratch_identity,
+    )
     if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
         return RIGID_FULL
     m.reference[:] = m.state
-    m.control[0].moved = 0.0
-    m.control[0].listed = True
+    m.control["moved"] = 0.0
+    m.control["listed"] = True
     return FIT
 
 

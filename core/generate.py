@@ -237,7 +237,7 @@ def _place(
                 )
                 candidates = candidates[~hidden]
         spacing = np.array([(high[0] - low[0]) / columns, (high[1] - low[1]) / rows])
-        placed = _add(
+        placed = add(
             x,
             y,
             radius,
@@ -257,7 +257,7 @@ def _place(
 
 
 @kernel
-def _add(
+def add(
     x,
     y,
     radius,

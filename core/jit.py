@@ -1,12 +1,14 @@
 """The one decorator for compiled kernels: flags, aliasing promise, and that they are kept on the disk (``kernel_cache``).
 
-Three decisions live here and nowhere else:
+Four decisions live here and nowhere else:
 
 - ``fastmath`` is cut down to the flags that keep ``nan`` and ``inf`` meaningful. Full fast math lets the compiler assume that
   neither occurs, and then ``isnan(nan)`` is False: a blown-up packing would look healthy.
 - ``kernel(noalias=True)`` promises that no two array arguments overlap, which is what lets LLVM vectorise a loop that gathers and
-  stores. Numba has the flag but no option for it; it is set by a custom compiler pipeline. Where a future Numba no longer takes
-  that, the kernel is compiled without the promise: the same numbers, about half as fast.
+  stores. Numba has the flag but no option for it; it is set by a compiler pipeline of our own (``core.inlining``). Where a future
+  Numba no longer takes that, the kernel is compiled without the promise: the same numbers, about half as fast.
+- Kernels make no arrays, unless they say so with ``allocates=True``: without the code that counts references there is less to
+  compile.
 - Values from scattered places are loaded one by one, not by the processor's gather instruction. On Zen 5 that makes the pair
   forces 11 to 18 % faster, and on many others gathers have been slow since a flaw was closed in 2023.
 """
@@ -21,54 +23,73 @@ from typing import Any
 import numba
 from llvmlite import binding
 
+from core import inlining
 from core.kernel_cache import keep
 
 FAST_MATH = {"reassoc", "contract", "arcp", "nsz"}
 NO_GATHER = "+prefer-no-gather"
 
 
-def _noalias_pipeline() -> type | None:
-    """Compiler pipeline that sets LLVM's noalias on array arguments, or None where Numba's inner workings have changed."""
-    try:
-        from numba.core import compiler
-        from numba.core.targetconfig import Option
-
-        if not isinstance(compiler.Flags.options["noalias"], Option):
-            return None
-
-        passes: Any = compiler.DefaultPassBuilder
-
-        class NoAlias(compiler.CompilerBase):
-            def define_pipelines(self) -> list[Any]:
-                self.state.flags.noalias = True
-                return [passes.define_nopython_pipeline(self.state)]
-
-        return NoAlias
-    except (ImportError, AttributeError, KeyError):
-        return None
+PIPELINES = {noalias: inlining.pipelines(noalias) for noalias in (False, True)}
 
 
-NOALIAS_PIPELINE = _noalias_pipeline()
+# Nearly every processor of the last ten years: AVX2 and fused multiplication. Wider registers make no kernel here faster.
+LEVEL = "x86-64-v3"
+LEVEL_FEATURES = [
+    *[
+        "64bit",
+        "avx",
+        "avx2",
+        "bmi",
+        "bmi2",
+        "cmov",
+        "crc32",
+        "cx16",
+        "cx8",
+        "f16c",
+        "fma",
+        "fxsr",
+        "lzcnt",
+        "mmx",
+        "movbe",
+    ],
+    *["popcnt", "sahf", "sse", "sse2", "sse3", "sse4.1", "sse4.2", "ssse3", "xsave"],
+]
 
 
-def _load_one_by_one() -> None:
-    """Ask LLVM for this processor's code without gathers, unless NUMBA_CPU_FEATURES has asked for something else."""
+def _choose_processor() -> None:
+    """Compile for a level of processors, if this one has it, else for this one; unless Numba's variables ask for something else.
+
+    So the same commands give the same bits on all of them, and kernels compiled on one serve on another.
+    """
     config: Any = numba.config
-    knows = platform.machine().lower() in {"x86_64", "amd64"} and binding.llvm_version_info >= (18,)
-    if config.CPU_FEATURES is None and knows:
-        with suppress(RuntimeError):  # LLVM does not know this processor
-            config.CPU_FEATURES = f"{binding.get_host_cpu_features().flatten()},{NO_GATHER}"
+    asked = config.CPU_NAME is not None or config.CPU_FEATURES is not None
+    if asked or platform.machine().lower() not in {"x86_64", "amd64"}:
+        return
+    with suppress(RuntimeError):  # LLVM does not know this processor
+        here = binding.get_host_cpu_features()
+        features = here.flatten()
+        if all(here.get(name, False) for name in LEVEL_FEATURES):
+            config.CPU_NAME = LEVEL
+            features = ",".join(f"+{name}" for name in LEVEL_FEATURES)
+        gathers = [NO_GATHER] if binding.llvm_version_info >= (18,) else []
+        config.CPU_FEATURES = ",".join([features, *gathers])
 
 
-_load_one_by_one()
+_choose_processor()
 
 
 def kernel(
-    function: Callable[..., Any] | None = None, *, noalias: bool = False, **options: Any
+    function: Callable[..., Any] | None = None,
+    *,
+    noalias: bool = False,
+    allocates: bool = False,
+    **options: Any,
 ) -> Any:
     """Compile a function to machine code that releases the GIL and is cached on disk.
 
-    Use as ``@kernel`` or ``@kernel(noalias=True)``; further keywords go to ``numba.njit``. With ``cache=False`` nothing is kept.
+    Use as ``@kernel`` or ``@kernel(noalias=True)``; ``allocates`` where it makes arrays; further keywords go to ``numba.njit``.
+    With ``cache=False`` nothing is kept.
     """
 
     def decorate(f: Callable[..., Any]) -> Any:
@@ -79,12 +100,19 @@ def kernel(
             # One copy of the code: else a first run, which has both, may call another copy of a
             # callee than a run from the cache, optimised differently in the last bit.
             "forceinline": True,
+            "_nrt": allocates,
         }
-        if noalias and NOALIAS_PIPELINE is not None:
-            flags["pipeline_class"] = NOALIAS_PIPELINE
         flags.update(options)
-        dispatcher = numba.njit(**flags)(f)
-        if flags.get("cache", True):
+        cached = flags.pop("cache", True)
+        pipelines = None if flags.get("parallel") else PIPELINES[noalias]
+        if pipelines is None:
+            dispatcher = numba.njit(**flags)(f)
+        else:
+            dispatcher = numba.njit(pipeline_class=pipelines.outer, **flags)(f)
+            inner = numba.njit(pipeline_class=pipelines.inner, **flags)(f)
+            dispatcher.get_call_template = inner.get_call_template
+            dispatcher.get_overload = inner.get_overload
+        if cached:
             keep(dispatcher)
         return dispatcher
 

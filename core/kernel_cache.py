@@ -1,8 +1,9 @@
 """Where compiled kernels are kept on the disk: a folder for each state of the sources that they are made of.
 
 Numba's disk cache does not notice an edited callee in another file, so the name of the folder carries a hash of all sources that
-a kernel may call: those of ``core`` and those beside it. Every edit leaves a folder behind; the ones that nobody has used for
-a month are removed.
+a kernel may call, of the compiler's version, and of the processor that it compiles for. Every edit leaves a folder behind; the
+ones that nobody has used for a month are removed. A wheel can bring such folders with it (``SHIPPED``), made where the same
+compiler compiled for the same processor: what fits is used, all else is compiled.
 
 Keeping them saves time and nothing else: where nothing can be written, what is kept cannot be read, or the disk is full, the
 kernels are compiled as at a first start.
@@ -13,7 +14,9 @@ from __future__ import annotations
 import hashlib
 import logging
 import os
+import platform
 import shutil
+import sys
 import tempfile
 import time
 from contextlib import suppress
@@ -21,8 +24,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import llvmlite
 import numba
-from numba.core.caching import NullCache
+from filelock import FileLock
+from llvmlite import binding
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from platformdirs import user_cache_path
 
 from core.errors import reason_of
@@ -32,11 +38,34 @@ log = logging.getLogger(__name__)
 PREFIX = "kernels-"
 UNUSED = 30 * 86_400.0  # [s] after which a folder goes
 CORE = Path(__file__).parent
+SHIPPED = CORE / "compiled"  # folders that came with the program
+BUSY = 10.0  # [s] to wait for another process that keeps the same kernel
+
+
+def target() -> str:
+    """What the compiler compiles for: its own version, and the processor's."""
+    config: Any = numba.config
+    name = config.CPU_NAME or binding.get_host_cpu_name()
+    features = config.CPU_FEATURES
+    if features is None:
+        with suppress(RuntimeError):  # LLVM does not know this processor
+            features = binding.get_host_cpu_features().flatten()
+    return " ".join(
+        (
+            numba.__version__,
+            llvmlite.__version__,
+            sys.implementation.cache_tag,
+            platform.system(),
+            platform.machine(),
+            name,
+            str(features),
+        )
+    )
 
 
 def source_hash(*folders: Path) -> str:
-    """Hash of all sources in some folders and of the compiler's version; changes when any of them does."""
-    digest = hashlib.sha256(numba.__version__.encode())
+    """Hash of all sources in some folders and of the ``target``; changes when any of them does."""
+    digest = hashlib.sha256(target().encode())
     for folder in folders:
         for path in sorted(folder.glob("*.py")):
             digest.update(path.name.encode())
@@ -46,39 +75,65 @@ def source_hash(*folders: Path) -> str:
 
 @cache
 def place(folder: Path) -> Path:
-    """Where the kernels of the sources in ``folder`` are kept, marked as used today."""
+    """Where the kernels of the sources in ``folder`` are kept, marked as used today; NUMBA_CACHE_DIR names another root."""
+    config: Any = numba.config
+    own = "NUMBA_CACHE_DIR" in os.environ
+    root = Path(config.CACHE_DIR).absolute() if own else user_cache_path("auxetic-sandbox")
     sources = (CORE,) if folder == CORE else (CORE, folder)
-    kept = user_cache_path("auxetic-sandbox") / (PREFIX + source_hash(*sources))
+    kept = root / (PREFIX + source_hash(*sources))
     with suppress(OSError):
         os.utime(kept)
     return kept
 
 
 def keep(dispatcher: Any) -> None:
-    """Keep what a dispatcher compiles in the place of its source, unless NUMBA_CACHE_DIR names another; if it can be kept."""
-    config: Any = numba.config
-    before = config.CACHE_DIR
-    if "NUMBA_CACHE_DIR" in os.environ:
-        where = Path(before).absolute()
-    else:
-        where = place(Path(dispatcher.py_func.__code__.co_filename).parent)
-    if not _usable(where):
-        return
-    config.CACHE_DIR = str(where)
-    try:
-        dispatcher.enable_caching()
-    except RuntimeError:  # its own folder in there cannot be used, and Numba knows no other
-        return
-    finally:
-        config.CACHE_DIR = before
-    inner = dispatcher._cache
-    # Else Numba has gone on to a folder beside the source, where an edited callee is not noticed.
-    inside = Path(inner.cache_path).is_relative_to(where)
-    dispatcher._cache = _Lenient(inner) if inside else NullCache()
+    """Keep what a dispatcher compiles in the place of its source, if it can be kept, and take what came with the program."""
+    where = place(Path(dispatcher.py_func.__code__.co_filename).parent)
+    dispatcher._cache = _Kept(
+        _cache(dispatcher.py_func, where) if usable(where) else None,
+        _cache(dispatcher.py_func, SHIPPED / where.name)
+        if (SHIPPED / where.name).is_dir()
+        else None,
+    )
+
+
+def _cache(function: Any, where: Path) -> Any:
+    """Numba's cache of a function in a folder that stands for all that the code depends on."""
+
+    class Locator:
+        """Says what Numba asks of a place."""
+
+        @classmethod
+        def from_function(cls, function: Any, source: str) -> Any:
+            del function, source
+            return cls()
+
+        def ensure_cache_path(self) -> None:
+            where.mkdir(parents=True, exist_ok=True)
+
+        def get_cache_path(self) -> str:
+            return str(where)
+
+        def get_source_stamp(self) -> str:
+            return where.name  # neither the source's time nor its place matter
+
+        def get_disambiguator(self) -> str:
+            return str(function.__code__.co_firstlineno)
+
+    base: Any = CompileResultCacheImpl
+
+    class Impl(base):  # type: ignore[misc]
+        _locator_classes = (Locator,)
+
+    class Cache(FunctionCache):
+        _impl_class = Impl
+
+    made: Any = Cache
+    return made(function)
 
 
 @cache
-def _usable(where: Path) -> bool:
+def usable(where: Path) -> bool:
     """Can something be kept there? If not, it is said, once."""
     try:
         if not where.is_absolute():
@@ -94,30 +149,42 @@ def _usable(where: Path) -> bool:
     return True
 
 
-class _Lenient:
-    """Numba's cache of one function: what cannot be read is missing, what cannot be written is not kept."""
+class _Kept:
+    """Cache of one function: what cannot be read is missing, what cannot be written is not kept."""
 
-    def __init__(self, inner: Any) -> None:
-        self._inner = inner
+    def __init__(self, own: Any, shipped: Any) -> None:
+        self._own, self._shipped = own, shipped
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._inner, name)
+        return getattr(self._own or self._shipped, name)
 
     def load_overload(self, *arguments: Any) -> Any:
         """What was compiled before, or None."""
+        return self._load(self._shipped, arguments) or self._load(self._own, arguments)
+
+    def _load(self, cache: Any, arguments: tuple[Any, ...]) -> Any:
+        if cache is None:
+            return None
         try:
-            return self._inner.load_overload(*arguments)
+            return cache.load_overload(*arguments)
         # A pickle that is damaged, or comes from elsewhere, may raise anything.
         except Exception as error:  # noqa: BLE001
             log.info("kept code cannot be read: %r", error)
-            with suppress(OSError):
-                self._inner.flush()  # else the index stands in the way of saving
+            if cache is self._own:
+                with suppress(OSError):
+                    cache.flush()  # else the index stands in the way of saving
             return None
 
     def save_overload(self, *arguments: Any) -> None:
-        """Keep it, if that is possible."""
+        """Keep it, if that is possible.
+
+        One process at a time: Numba reads an index, chooses a file, and writes both; two would choose the same file.
+        """
+        if self._own is None:
+            return
         try:
-            self._inner.save_overload(*arguments)
+            with FileLock(Path(self._own.cache_path) / "lock", timeout=BUSY):
+                self._own.save_overload(*arguments)
         except Exception as error:  # noqa: BLE001  saving reads the index
             log.info("compiled code cannot be kept: %r", error)
 

@@ -80,6 +80,17 @@ def wrap(value, length, inverse):
 
 
 @kernel
+def span(values):
+    """Least and greatest of some values; nan where one of them is."""
+    least = values[0]
+    most = values[0]
+    for value in values:
+        least = value if value < least or value != value else least
+        most = value if value > most or value != value else most
+    return least, most
+
+
+@kernel
 def search_cells(state, skin, lists, box):
     """Sort grains into cells at least one cut-off wide. Returns (columns, rows, width of a column [R])."""
     grains = state.shape[1]
@@ -99,11 +110,11 @@ def search_cells(state, skin, lists, box):
         width = box[0]
         height = box[2]
     if open_x:
-        x0 = state[0].min()
-        width = state[0].max() - x0
+        x0, most_x = span(state[0])
+        width = most_x - x0
     if open_y:
-        y0 = state[1].min()
-        height = state[1].max() - y0
+        y0, most_y = span(state[1])
+        height = most_y - y0
     # Never more cells than ``cell_start`` holds, however far one grain has been thrown.
     most = math.sqrt(lists.cell_start.shape[0] - 1.0)
     columns = int(min(max(width / reach, 1.0), most))
@@ -225,13 +236,22 @@ def find_pairs(state, skin, lists, box):
     return pairs
 
 
-@kernel
-def rebuild(state, contact_stiffness, skin, lists, box):
+def rebuild(
+    state: NDArray[np.float64],
+    contact_stiffness: NDArray[np.float64],
+    skin: float,
+    lists: Lists,
+    box: tuple[float, ...] | None,
+) -> int:
     """Find all pairs and lay them out in slots for grains standing in ``lists.order``. Returns FIT, PAIRS_FULL or SLOTS_FULL."""
-    grains = state.shape[1]
     pairs = find_pairs(state, skin, lists, box)
-    if pairs < 0:
-        return PAIRS_FULL
+    return PAIRS_FULL if pairs < 0 else int(lay_out(pairs, contact_stiffness, lists))
+
+
+@kernel
+def lay_out(pairs, contact_stiffness, lists):
+    """Lay the first ``pairs`` pairs out in slots. Returns FIT, PAIRS_FULL or SLOTS_FULL."""
+    grains = contact_stiffness.shape[0]
     # Every array is fetched once: inside a loop each look into the tuple would cost two atomic reference counts.
     width, offsets, neighbor, stiffness = lists.width, lists.offset, lists.neighbor, lists.stiffness
     degree, place, order, filled = lists.degree, lists.place, lists.order, lists.filled

@@ -222,7 +222,7 @@ def find_rigid_pairs(state, rigid, reach, box):
     return True
 
 
-@kernel
+@kernel(allocates=True)
 def changed_sides(before, after, rigid, box):
     """True for the listed pairs of which the grain, on the straight way from before to after, has crossed an edge.
 

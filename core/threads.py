@@ -64,7 +64,7 @@ def running(threads: int) -> Iterator[None]:
         yield
 
 
-@kernel(parallel=True, forceinline=False)
+@kernel(parallel=True, forceinline=False, allocates=True)
 def first_kick(velocity, force, inverse_mass, keep, push, chunk, most):
     """As ``sweeps.first_kick``."""
     count = velocity.shape[0]
@@ -76,7 +76,7 @@ def first_kick(velocity, force, inverse_mass, keep, push, chunk, most):
     return largest(most)
 
 
-@kernel(parallel=True, forceinline=False)
+@kernel(parallel=True, forceinline=False, allocates=True)
 def move(state, velocity, dt, support, force, friction):
     """As ``sweeps.drift``, then as ``contacts.prepare``."""
     count = state.shape[1]
@@ -102,7 +102,7 @@ def move(state, velocity, dt, support, force, friction):
             prepare_friction(begin, end, state, friction)
 
 
-@kernel(parallel=True, forceinline=False)
+@kernel(parallel=True, forceinline=False, allocates=True)
 def all_forces(
     state,
     support,
@@ -144,7 +144,7 @@ def all_forces(
     return energy
 
 
-@kernel(parallel=True, forceinline=False)
+@kernel(parallel=True, forceinline=False, allocates=True)
 def last_kick(velocity, force, inverse_mass, half_dt, chunk, sums, most):
     """As ``sweeps.last_kick``."""
     count = velocity.shape[0]

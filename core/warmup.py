@@ -1,76 +1,147 @@
-"""Compile, or load from the cache, every kernel that a scene will need, and say how far that is.
+"""Compile, or load from where they are kept, the kernels that a scene will need, and say how far that is.
 
-Left alone, the kernels would compile inside the first relaxation: the same wait, without a word about it.
+Left alone, the kernels would compile inside the first relaxation: the same wait, without a word about it. They come in parts,
+which several processes can compile side by side: whoever finds a part compiled loads it in no time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import gc
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import numpy as np
 
-from core import contacts, fire, kernel_cache, neighbors, observables, rigid_contacts
-from core.arrays import Floats
+from core import generate, kernel_cache, observables, rigid_contacts
 from core.friction import Friction
-from core.frictional_contacts import Origin
 from core.packing import Packing, PeriodicBox
 from core.relaxation import Relaxation
 
+Tell = Callable[[float], None]
+DONE = "done-"  # a file of that name says that a part has been compiled
 
-def compile_kernels(
-    *,
-    periodic: bool,
-    rigid: bool,
-    friction: bool,
-    gravity: bool,
-    progress: Callable[[float], None] | None = None,
-) -> None:
-    """Compile for a scene with these terms. ``progress`` is told the share done, from small kernels to the one that holds all."""
-    box = PeriodicBox(40.0, 40.0) if periodic else None
-    packing = Packing([0.0, 1.9, 3.8], [0.0, 0.1, 0.0], box=box)
-    rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
-    primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
-    origin = _origin(packing, primitives) if friction else None
-    relaxation = Relaxation(
-        packing,
-        primitives,
-        origin,
-        (0.0, -1e-3) if gravity else None,
-        tolerance=0.5,
-        max_iterations=10,
-    )
-    m, form, body = relaxation._minimizer, relaxation._box, relaxation._rigid
-    weight = relaxation._weight
-    steps: list[tuple[float, Callable[[], object]]] = [
-        (0.13, lambda: neighbors.find_pairs(m.state, 0.1, m.lists, form)),
-        (0.10, relaxation._relist),
-        (0.15, lambda: _contact_forces(m, form)),
-        (0.15, lambda: fire.evaluate(m, form, body, relaxation.friction_terms, weight, None)),
-        (0.10, lambda: fire.mean_contact_force(m, form, body)),
-        (0.20, lambda: relaxation.run(10)),
-        (0.01, relaxation.gone_through),
-        (0.01, lambda: relaxation.slips() if friction else None),
-        (0.08, lambda: observables.grain_contacts(packing)),
-        (0.07, lambda: observables.body_contacts(packing, primitives)),
-    ]
-    done = 0.0
-    for share, step in steps:
-        step()
-        done += share
-        if progress is not None:
-            progress(min(done, 1.0))
+
+def _silent(share: float) -> None:
+    """Nobody asks how far it is."""
+
+
+def compile_packing(*, periodic: bool, rigid: bool, progress: Tell = _silent) -> None:
+    """What packs grains, and looks at what is packed. ``progress`` is told the share done."""
+    scene = _Tiny(periodic, rigid)
+    with compiling(kernel_cache.CORE, packing_part(periodic=periodic, rigid=rigid)):
+        for done, step in (
+            (0.1, scene.place),
+            (0.7, scene.relax),
+            (0.8, lambda: observables.grain_contacts(scene.packing)),
+            (1.0, lambda: observables.body_contacts(scene.packing, scene.primitives)),
+        ):
+            step()
+            progress(done)
     kernel_cache.prune()
 
 
-def _origin(packing: Packing, primitives: Floats) -> Origin:
-    """Of an increment in which nothing moves."""
-    owner, still = np.zeros(len(primitives), dtype=np.int64), np.zeros((1, 3))
-    return Friction(0.5, len(packing)).begin(packing, primitives, owner, still, still)
+def compile_increments(*, periodic: bool, rigid: bool, friction: bool, gravity: bool) -> None:
+    """What relaxes an increment with these terms."""
+    part = increments_part(periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)
+    with compiling(kernel_cache.CORE, part):
+        _Tiny(periodic, rigid).relax(friction=friction, gravity=gravity)
 
 
-def _contact_forces(m: fire.Minimizer, box: tuple[float, ...] | None) -> None:
-    """Those between grains alone."""
-    rows, lists = m.force, m.lists
-    contacts.prepare(*m.state[2:5], *m.support, *rows[:5])
-    slots = lists.width, lists.offset, lists.neighbor, lists.stiffness
-    contacts.add_contact_forces(0, rows.shape[1], m.state, m.support, rows, *slots, box, None)
+def compile_kernels(*, periodic: bool, rigid: bool, friction: bool, gravity: bool) -> None:
+    """All that a scene with these terms needs of the solver."""
+    compile_packing(periodic=periodic, rigid=rigid)
+    compile_increments(periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)
+
+
+def packing_part(*, periodic: bool, rigid: bool) -> str:
+    """Name of what ``compile_packing`` compiles."""
+    return _name("packing", periodic=periodic, rigid=rigid)
+
+
+def increments_part(*, periodic: bool, rigid: bool, friction: bool, gravity: bool) -> str:
+    """Name of what ``compile_increments`` compiles."""
+    return _name("increments", periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)
+
+
+def compile_part(name: str) -> None:
+    """What one of these names stands for."""
+    kind, *there = name.split("-")
+    periodic, rigid, friction, gravity = (
+        term in there for term in ("periodic", "rigid", "friction", "gravity")
+    )
+    if kind == "packing":
+        compile_packing(periodic=periodic, rigid=rigid)
+    else:
+        compile_increments(periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)
+
+
+def _name(kind: str, **terms: bool) -> str:
+    return "-".join([kind, *(name for name, there in terms.items() if there)])
+
+
+def compiled(folder: Path, part: str) -> bool:
+    """Has a part of the kernels in a folder of sources been compiled and kept?"""
+    kept = kernel_cache.place(folder)
+    return any((at / (DONE + part)).exists() for at in (kept, kernel_cache.SHIPPED / kept.name))
+
+
+@contextmanager
+def compiling(folder: Path, part: str) -> Iterator[None]:
+    """Compile a part inside, and note that it is done. The collector of garbage rests: a compiler makes much that stays."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+    if not compiled(folder, part):
+        with suppress(OSError):  # nothing can be kept there: nothing is
+            (kernel_cache.place(folder) / (DONE + part)).touch()
+
+
+class _Tiny:
+    """Three grains on a wall: enough to call every kernel."""
+
+    def __init__(self, periodic: bool, rigid: bool) -> None:
+        self.box = PeriodicBox(40.0, 40.0) if periodic else None
+        self.packing = Packing([0.0, 1.9, 3.8], [0.0, 0.1, 0.0], box=self.box)
+        rows = np.array([[rigid_contacts.EDGE, -5.0, -0.95, 1.0, 0.0, 9.0, -0.95, 0.0]])
+        self.primitives = rows if rigid else np.zeros((0, rigid_contacts.COLUMNS))
+
+    def place(self) -> None:
+        """One more grain, at random."""
+        one, none = np.ones(1), np.full(1, -1, dtype=np.int64)
+        generate.add(
+            np.zeros(1),
+            np.zeros(1),
+            one,
+            none + 1,
+            0,
+            np.zeros((1, 2)),
+            self.primitives,
+            none,
+            none.copy(),
+            1,
+            1,
+            np.zeros(2),
+            np.ones(2),
+            None if self.box is None else self.box.kernel_form(),
+        )
+
+    def relax(self, *, friction: bool = False, gravity: bool = False) -> None:
+        """From an increment in which nothing moves."""
+        origin = None
+        if friction:
+            owner, still = np.zeros(len(self.primitives), dtype=np.int64), np.zeros((1, 3))
+            memory = Friction(0.5, len(self.packing))
+            origin = memory.begin(self.packing, self.primitives, owner, still, still)
+        weight = (0.0, -1e-3) if gravity else None
+        relaxation = Relaxation(
+            self.packing, self.primitives, origin, weight, tolerance=0.5, max_iterations=10
+        )
+        relaxation.run(10)
+        relaxation.gone_through()
+        if friction:
+            relaxation.slips()

@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay, sweep, bench, study, site, lesson.
+"""The command line: list, play, record, replay, sweep, bench, study, site, lesson, prepare.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -114,6 +114,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         _add_study,
         _add_site,
         _add_lesson,
+        _add_prepare,
     ):
         add(command)
     return parser, commands
@@ -272,6 +273,16 @@ def _add_study(command: Command) -> None:
         metavar="WHERE",
         help="local: processes here (default); dask://HOST:PORT: a Dask cluster (clogging)",
     )
+
+
+def _add_prepare(command: Command) -> None:
+    prepare = command(
+        "prepare", verbs.prepare, "Compile everything now, so that no scene makes anybody wait."
+    )
+    prepare.add_argument("scenes", nargs="*", metavar="SCENE", help="these instead of all")
+    # Between two processes of this program.
+    prepare.add_argument("--parts", nargs="+", default=(), help=argparse.SUPPRESS)
+    prepare.add_argument("--idle", action="store_true", help=argparse.SUPPRESS)
 
 
 def _add_site(command: Command) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -204,6 +205,28 @@ def study(options: argparse.Namespace) -> int:
         kept = f"; what was finished is in {options.out}, the same command goes on from there"
         print(f"stopped{kept if there else ': nothing was written'}", file=sys.stderr)
         return INTERRUPTED
+
+
+def prepare(options: argparse.Namespace) -> int:
+    """Compile all kernels that scenes may need, and say how long it takes."""
+    from sandbox import environment
+    from sandbox.preparation import parts
+    from scenes import registry
+
+    environment.prepare_headless()
+    if options.idle:
+        parts.be_idle()
+    scenes = [registry.get(name).name for name in options.scenes] or registry.names()
+    wanted = list(options.parts) or parts.of_scenes(scenes)
+    missing = parts.missing(wanted)
+    began = time.perf_counter()
+    parts.carry_out(missing, lambda part, seconds: print(f"{seconds:6.1f} s  {part}", flush=True))
+    took = time.perf_counter() - began
+    what = counted(len(missing), "part")
+    print(f"compiled {what} of the kernels in {took:.1f} s" if missing else "everything is there")
+    if parts.missing(missing):
+        raise InputError("what was compiled cannot be kept: every start will compile it anew")
+    return OK
 
 
 def site(options: argparse.Namespace) -> int:

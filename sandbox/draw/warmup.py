@@ -1,16 +1,32 @@
-"""Compile the drawing kernels, or load them from the cache, before the first picture needs them."""
+"""Compile the drawing kernels, or load them from where they are kept, before the first picture needs them."""
 
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 
 import numpy as np
 
+from core.warmup import compiled, compiling
+from sandbox.beside import beside
 from sandbox.draw import raster
+
+FOLDER = Path(raster.__file__).parent
+DRAWING = "drawing"  # name of this part of the kernels
+
+
+def missing() -> list[str]:
+    """This part, unless it is kept."""
+    return [] if compiled(FOLDER, DRAWING) else [DRAWING]
 
 
 def compile_kernels() -> None:
     """Call every kernel once with the types that drawing uses. Touches no pygame."""
+    with compiling(FOLDER, DRAWING):
+        _draw_something()
+
+
+def _draw_something() -> None:
     clip = (0, 0, 8, 8)
     canvas = (np.zeros((8, 8), dtype=np.uint32), clip, (1.0, 0.0, 0.0))
     one = np.ones(1)
@@ -45,6 +61,8 @@ class Warmup:
 
     def _run(self) -> None:
         try:
+            with beside(missing()):
+                pass
             compile_kernels()
         except Exception as error:  # noqa: BLE001 - raised again in the thread that asks
             self.error = error

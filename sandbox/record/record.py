@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from core.errors import InputError
 from core.files import atomic_write
 from sandbox.bars import bar_options
+from sandbox.beside import beside
 from sandbox.files.pipes import with_reader
 from sandbox.files.table import PLAIN, GrowingTable, Spelling
 from sandbox.interrupts import deferred
@@ -68,12 +69,15 @@ def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
     One frame an increment. Ctrl-C, or the end of the protocol, ends the run early; everything done
     until then is written.
     """
+    from sandbox.draw.warmup import missing
     from sandbox.session.commands import Protocol
 
     try:
+        with beside(missing() if output.film else []):
+            for session in sessions:
+                with build_bar() as progress:
+                    session.build(progress)
         for session in sessions:
-            with build_bar() as progress:
-                session.build(progress)
             if not session.frame().protocol:  # a file may have been left in the middle of it
                 session.submit(Protocol(True))
     except KeyboardInterrupt:

@@ -5,12 +5,20 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import get_args
 
+from core import kernel_cache
 from core.engine_state import keep_bodies, place_bodies
 from core.errors import InputError
-from core.warmup import compile_kernels
+from core.warmup import (
+    compile_increments,
+    compile_kernels,
+    compile_packing,
+    compiled,
+    increments_part,
+)
+from sandbox.beside import beside
 from sandbox.session.beginning import Asked, Made, SceneFile, put_into
 from sandbox.session.checkpoints import Checkpoint
 from sandbox.session.commands import (
@@ -46,7 +54,7 @@ from scenes.scene import Check, Ingredients, Scene, Setup, Values
 from scenes.text import message
 
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"
-COMPILE_SHARE = 0.5
+COMPILED, PACKED = 0.4, 0.8  # shares of a start
 UNDOABLE = (Grab, Protocol, Reset, Change, Recall, *get_args(Edit))
 JOURNEYS = (Reset, Recall, Undo, Redo)
 
@@ -55,6 +63,13 @@ Tell = Callable[[str, float], None]  # what is being built, and the share of it 
 
 def _go_on() -> None:
     """Nobody wants to break the work off."""
+
+
+def _increments(terms: Ingredients) -> list[str]:
+    """What nobody has compiled yet, and packing does not compile on the way."""
+    part = increments_part(**asdict(terms))
+    there = compiled(kernel_cache.CORE, part) or not (terms.friction or terms.gravity)
+    return [] if there else [part]
 
 
 class Session:
@@ -95,31 +110,29 @@ class Session:
 
     def _build(self, asked: Asked) -> None:
         report = self._progress or _silent
-        self._compile(asked.scene.ingredients(asked.settings_now))
-        report(PACKING, COMPILE_SHARE)
-        setup = asked.scene.build(
-            asked.settings,
-            asked.packing,
-            asked.seed,
-            lambda share: report(PACKING, COMPILE_SHARE + (1.0 - COMPILE_SHARE) * share),
-        )
+        terms = asked.scene.ingredients(asked.settings_now)
+        report(COMPILING, 0.0)
+        with beside(_increments(terms)):
+            compile_packing(
+                periodic=terms.periodic,
+                rigid=terms.rigid,
+                progress=lambda share: report(COMPILING, COMPILED * share),
+            )
+            report(PACKING, COMPILED)
+            setup = asked.scene.build(
+                asked.settings,
+                asked.packing,
+                asked.seed,
+                lambda share: report(PACKING, COMPILED + (PACKED - COMPILED) * share),
+            )
+            report(COMPILING, PACKED)
+        compile_increments(**asdict(terms))
         kept = None if asked.file is None else put_into(setup, asked)
         bodies = keep_bodies(setup.world)
         friction = None if setup.friction is None else setup.friction.copy()
         start = Start(setup.packing.copy(), friction, setup, bodies, asked, kept)
         self._start, self._run = start, _first_run(asked, setup, kept)
         report("ready", 1.0)
-
-    def _compile(self, terms: Ingredients) -> None:
-        report = self._progress or _silent
-        report(COMPILING, 0.0)
-        compile_kernels(
-            periodic=terms.periodic,
-            rigid=terms.rigid,
-            friction=terms.friction,
-            gravity=terms.gravity,
-            progress=lambda share: report(COMPILING, COMPILE_SHARE * share),
-        )
 
     # Commands.
 
@@ -229,7 +242,9 @@ class Session:
             return
         terms = self.scene.ingredients(settings)
         if terms != self.scene.ingredients(self.settings):
-            self._compile(terms)
+            report = self._progress or _silent
+            report(COMPILING, 0.0)
+            compile_kernels(**asdict(terms))
         self.run.adjust(settings, frozenset({name}))
 
     def _rebuild(self, name: str, value: object) -> None:

@@ -18,6 +18,7 @@ from sandbox.files import autosave
 from sandbox.interrupts import requests_to_end
 from sandbox.lessons.answers import Answers
 from sandbox.lessons.lesson import Lesson
+from sandbox.preparation.background import Background
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Protocol
 from sandbox.window.access.reader import Reader
@@ -178,6 +179,7 @@ class App:
         self._begun = time.perf_counter()
         self._warmup = Warmup()
         self._warmup.start()
+        self._background = Background()
 
     def close(self, clean: bool = True) -> bool:
         """Close the window, end the threads and the log; False if one is still compiling.
@@ -189,6 +191,7 @@ class App:
         stage.mouse.release(stage.send)
         stage.tone.close()
         stage.sound.close()
+        self._background.close()
         self.pages.explore.explorer.stop()
         self.farewell = stage.recorder.close()
         pygame.display.quit()
@@ -240,6 +243,8 @@ class App:
         preparing = snapshot.phase == "building" and snapshot.frame is None
         page = stage.show_menu or stage.show_explore
         self._splash = not self._warmup.ready or (preparing and not page)
+        if not self._splash:
+            self._background.begin()
         if self._splash:
             draw_splash(
                 renderer.surface,

@@ -49,7 +49,7 @@ def test_cached_kernels_give_the_same_bits(tmp_path: Path) -> None:
     compiled, first = run_alone(tmp_path)
     files = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")}
     loaded, second = run_alone(tmp_path)
-    assert len(files) > 5
+    assert len(files) > 3
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")} == files
     assert loaded == compiled
     assert second < first

@@ -239,3 +239,82 @@ def test_what_can_neither_be_read_nor_written_is_left_alone(compiled: Path) -> N
         path.mkdir()
     done = run_kernel(compiled, NUMBA_CACHE_DIR=str(compiled / "kept"))
     assert (done.returncode, done.stdout, done.stderr) == (0, "42.0\n", "")
+
+
+AT_ONCE = """
+import sys, time
+import numpy as np
+from numba.core.caching import IndexDataCacheFile
+from core.jit import kernel
+
+load = IndexDataCacheFile._load_index
+
+def slowly(self):  # between reading the index and writing it
+    found = load(self)
+    time.sleep(0.5)
+    return found
+
+IndexDataCacheFile._load_index = slowly
+
+@kernel
+def double(x):
+    return x + x
+
+kind = getattr(np, sys.argv[1])
+print(double(kind(21)), sum(double.stats.cache_hits.values()))
+"""
+
+
+def test_two_processes_keep_two_sorts_of_one_kernel(tmp_path: Path) -> None:
+    """Each in a file of its own: with Numba alone both would take the first free name, and one would be lost."""
+    (tmp_path / "both.py").write_text(AT_ONCE)
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(REPOSITORY),
+        "NUMBA_CACHE_DIR": str(tmp_path / "kept"),
+    }
+
+    def both() -> list[str]:
+        started = [
+            subprocess.Popen(
+                [sys.executable, str(tmp_path / "both.py"), kind],
+                env=environment,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            for kind in ("float64", "int64")
+        ]
+        return [process.communicate(timeout=300)[0].strip() for process in started]
+
+    assert both() == ["42.0 0", "42 0"]
+    assert len(list((tmp_path / "kept").rglob("*.nbc"))) == 2
+    assert both() == ["42.0 1", "42 1"]
+
+
+def test_what_came_with_the_program_is_taken(tmp_path: Path) -> None:
+    """With the very name that the sources and the processor give; and no other."""
+    assert run_kernel(tmp_path, NUMBA_CACHE_DIR=str(tmp_path / "shipped")).stdout == "42.0\n"
+    (kept,) = (tmp_path / "shipped").iterdir()
+    program = (
+        "import pathlib, sys; from core import kernel_cache; kernel_cache.SHIPPED = pathlib.Path(sys.argv[1]);"
+        "sys.path.insert(0, sys.argv[2]); from one import double; print(sum(double.stats.cache_hits.values()))"
+    )
+
+    def hits(own: str) -> str:
+        done = subprocess.run(
+            [sys.executable, "-c", program, str(kept.parent), str(tmp_path)],
+            env={
+                **os.environ,
+                "PYTHONPATH": str(REPOSITORY),
+                "NUMBA_CACHE_DIR": str(tmp_path / own),
+            },
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=True,
+        )
+        return done.stdout.split()[-1]
+
+    assert hits("a") == "1"
+    kept.rename(kept.with_name(kernel_cache.PREFIX + "0" * 16))
+    assert hits("b") == "0"

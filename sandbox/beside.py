@@ -1,0 +1,49 @@
+"""A second process that compiles kernels side by side with this one: of threads the compiler serves one at a time."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from core import kernel_cache
+
+ROOT = Path(__file__).parents[1]
+
+
+@contextmanager
+def beside(wanted: Sequence[str]) -> Iterator[None]:
+    """Meanwhile another process compiles these parts of the kernels; at the end it is waited for. Not on a single core."""
+    helper = start(wanted) if (os.cpu_count() or 1) > 1 else None
+    try:
+        yield
+    except BaseException:
+        if helper is not None:
+            helper.kill()
+            helper.wait()
+        raise
+    if helper is not None:
+        helper.wait()  # whatever came of it: what it did not compile is compiled here
+
+
+def start(wanted: Sequence[str], *, idle: bool = False) -> subprocess.Popen[bytes] | None:
+    """A process that compiles these parts, ``idle`` at the lowest priority; None if there are none, or nothing can be kept."""
+    if not wanted or not kernel_cache.usable(kernel_cache.place(kernel_cache.CORE)):
+        return None
+    # A frozen program is its own interpreter.
+    program = (
+        [sys.executable] if getattr(sys, "frozen", False) else [sys.executable, "-m", "sandbox"]
+    )
+    paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
+    with suppress(OSError):  # no process is to be had: it is compiled where it is needed
+        return subprocess.Popen(
+            [*program, "prepare", *(["--idle"] if idle else []), "--parts", *wanted],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    return None

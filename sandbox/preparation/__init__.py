@@ -1,0 +1,1 @@
+"""Compile kernels before somebody waits for them."""

@@ -1,0 +1,34 @@
+"""While somebody looks at the window, another process compiles what no scene has needed yet."""
+
+from __future__ import annotations
+
+import subprocess
+
+from sandbox.beside import start
+from sandbox.preparation import parts
+from scenes import registry
+
+
+class Background:
+    """At most one process, at the lowest priority, for as long as the window is open."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._begun = False
+
+    def begin(self) -> None:
+        """Start it, the first time; if nothing is missing there is none."""
+        if not self._begun:
+            self._begun = True
+            self._process = start(parts.missing(parts.of_scenes(registry.names())), idle=True)
+
+    @property
+    def busy(self) -> bool:
+        """Is something being compiled?"""
+        return self._process is not None and self._process.poll() is None
+
+    def close(self) -> None:
+        """End it. What it had finished is kept."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()

@@ -1,0 +1,136 @@
+"""Kernels are compiled in parts: every scene finds all of its own in them, and no part is compiled twice."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core import kernel_cache, warmup
+from sandbox.preparation import parts
+from scenes import registry
+
+REPOSITORY = Path(__file__).parents[2]
+TERMS = ("periodic", "rigid", "friction", "gravity")
+
+
+def run(*words: str, cache: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """This Python in a process of its own, with a folder for compiled kernels instead of the usual one."""
+    other = {} if cache is None else {"NUMBA_CACHE_DIR": str(cache)}
+    return subprocess.run(
+        [sys.executable, *words],
+        cwd=REPOSITORY,
+        env={**os.environ, **other},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+@pytest.mark.parametrize("there", list(itertools.product((False, True), repeat=4)))
+def test_a_name_says_what_is_compiled(
+    there: tuple[bool, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[dict[str, Any]] = []
+    monkeypatch.setattr(warmup, "compile_packing", lambda **terms: asked.append(terms))
+    monkeypatch.setattr(warmup, "compile_increments", lambda **terms: asked.append(terms))
+    terms = dict(zip(TERMS, there, strict=True))
+    bounds = {name: terms[name] for name in TERMS[:2]}
+    warmup.compile_part(warmup.increments_part(**terms))
+    warmup.compile_part(warmup.packing_part(**bounds))
+    assert asked == [terms, bounds]
+
+
+# Every scene as it is and with friction, as it is built, solved and drawn; says which kernels were compiled on the way.
+WATCHED = """
+import json, sys
+from itertools import islice
+from numba.core import event
+from sandbox.environment import prepare_headless
+prepare_headless()
+from core import warmup
+from sandbox.draw.render import Renderer
+from sandbox.preparation import parts
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
+from scenes import registry
+
+parts.carry_out(parts.of_scenes(registry.names()))
+compiled = []
+class Watch(event.Listener):
+    def on_start(self, happened):
+        compiled.append(f"{name}: {happened.data['dispatcher'].py_func.__qualname__}")
+    def on_end(self, happened):
+        pass
+event.register("numba:compile", Watch())
+FEW = {"avalanches": 60, "couette": 160, "gravity_hopper": 100, "hopper": 100, "intruder": 100}
+for name in registry.names():
+    scene = registry.get(name)
+    known = {p.name for p in scene.parameters}
+    few = {"grains": FEW[name]} if name in FEW else {}
+    few |= {"intruder_radius": 2.0} if name == "intruder" else {}
+    for more in ({}, {"friction": 0.5} if "friction" in known else None):
+        if more is None:
+            continue
+        session = Session(name, scene.packings[-1], 1, {**few, **more})
+        session.build()
+        session.submit(Protocol(True))
+        list(islice(session.increments(400, lambda *_: None), 2))
+        for view in ("kind", "pressure"):
+            Renderer((640, 360), view=view).draw(session.frame())
+print(json.dumps(compiled))
+"""
+
+
+@pytest.mark.slow
+def test_after_all_parts_no_scene_compiles_anything() -> None:
+    done = run("-c", WATCHED)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.splitlines()[-1]) == []
+
+
+@pytest.mark.slow
+def test_what_is_compiled_once_is_there_for_good(tmp_path: Path) -> None:
+    """The command, with a folder of its own: the second time there is nothing to do, and one time it says so."""
+    first = run("-m", "sandbox", "prepare", "two_ellipses", cache=tmp_path)
+    assert first.returncode == 0, first.stderr
+    wanted = parts.of_scenes(["two_ellipses"])
+    said = [line.split()[-1] for line in first.stdout.splitlines()[:-1]]
+    assert said == wanted
+    assert first.stdout.splitlines()[-1].startswith(f"compiled {len(wanted)} parts")
+    kept = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")}
+    second = run("-m", "sandbox", "prepare", "two_ellipses", cache=tmp_path)
+    assert second.stdout == "everything is there\n"
+    assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")} == kept
+
+
+def test_an_unknown_scene_is_a_mistake() -> None:
+    done = run("-m", "sandbox", "prepare", "hoper")
+    assert done.returncode == 2
+    assert "hopper" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_where_nothing_can_be_kept_no_process_is_started(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from sandbox import beside
+
+    monkeypatch.setattr(kernel_cache, "usable", lambda where: False)
+    assert beside.start(["increments-rigid"]) is None
+    assert beside.start([]) is None
+
+
+def test_every_scene_has_its_parts() -> None:
+    """None is left out of the list of all."""
+    every = parts.of_scenes(registry.names())
+    assert every[0] == "drawing"
+    assert len(every) == len(set(every))
+    for name in registry.names():
+        assert set(parts.of_scene(registry.get(name))) <= set(every)
