@@ -1,0 +1,55 @@
+"""What compiles while somebody looks at the window: one process, begun once, ended with the window."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from sandbox.preparation import background
+from sandbox.preparation.background import Background
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
+    """The processes that were started; each would sleep for a minute."""
+    processes: list[subprocess.Popen[bytes]] = []
+
+    def start(wanted: list[str], *, idle: bool) -> subprocess.Popen[bytes] | None:
+        assert idle
+        if not wanted:
+            return None
+        program = "import time; time.sleep(60.0)"
+        processes.append(subprocess.Popen([sys.executable, "-c", program]))
+        return processes[-1]
+
+    monkeypatch.setattr(background, "start", start)
+    return processes
+
+
+def test_it_begins_once_and_ends_with_the_window(
+    started: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(background.parts, "missing", lambda wanted: wanted[:1])
+    work = Background()
+    assert not work.busy
+    work.close()  # before it has begun
+    work.begin()
+    work.begin()
+    (process,) = started
+    assert work.busy
+    work.close()
+    assert not work.busy
+    assert process.returncode is not None
+
+
+def test_where_all_is_compiled_there_is_none(
+    started: list[subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(background.parts, "missing", lambda wanted: [])
+    work = Background()
+    work.begin()
+    assert not work.busy
+    work.close()
+    assert started == []
