@@ -12,6 +12,7 @@ from pathlib import Path
 from core import kernel_cache
 
 ROOT = Path(__file__).parents[1]
+IDLE, HASTE = "idle", "haste"  # first word to the other process: does somebody wait for it?
 
 
 @contextmanager
@@ -31,16 +32,13 @@ def beside(wanted: Sequence[str]) -> Iterator[None]:
 
 def start(wanted: Sequence[str], *, idle: bool = False) -> subprocess.Popen[bytes] | None:
     """A process that compiles these parts, ``idle`` at the lowest priority; None if there are none, or nothing can be kept."""
-    if not wanted or not kernel_cache.usable(kernel_cache.place(kernel_cache.CORE)):
+    frozen = getattr(sys, "frozen", False)  # then there is no interpreter to start
+    if not wanted or frozen or not kernel_cache.usable(kernel_cache.place(kernel_cache.CORE)):
         return None
-    # A frozen program is its own interpreter.
-    program = (
-        [sys.executable] if getattr(sys, "frozen", False) else [sys.executable, "-m", "sandbox"]
-    )
     paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
     with suppress(OSError):  # no process is to be had: it is compiled where it is needed
         return subprocess.Popen(
-            [*program, "prepare", *(["--idle"] if idle else []), "--parts", *wanted],
+            [sys.executable, "-m", "sandbox.preparation", IDLE if idle else HASTE, *wanted],
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,

@@ -280,9 +280,6 @@ def _add_prepare(command: Command) -> None:
         "prepare", verbs.prepare, "Compile everything now, so that no scene makes anybody wait."
     )
     prepare.add_argument("scenes", nargs="*", metavar="SCENE", help="these instead of all")
-    # Between two processes of this program.
-    prepare.add_argument("--parts", nargs="+", default=(), help=argparse.SUPPRESS)
-    prepare.add_argument("--idle", action="store_true", help=argparse.SUPPRESS)
 
 
 def _add_site(command: Command) -> None:

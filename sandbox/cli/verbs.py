@@ -214,11 +214,8 @@ def prepare(options: argparse.Namespace) -> int:
     from scenes import registry
 
     environment.prepare_headless()
-    if options.idle:
-        parts.be_idle()
     scenes = [registry.get(name).name for name in options.scenes] or registry.names()
-    wanted = list(options.parts) or parts.of_scenes(scenes)
-    missing = parts.missing(wanted)
+    missing = parts.missing(parts.of_scenes(scenes))
     began = time.perf_counter()
     parts.carry_out(missing, lambda part, seconds: print(f"{seconds:6.1f} s  {part}", flush=True))
     took = time.perf_counter() - began
