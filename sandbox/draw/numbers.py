@@ -26,11 +26,17 @@ def nice_ceiling(value: float, steps: tuple[float, ...] = ONE_TWO_FIVE) -> float
     return 10.0 * power
 
 
-def ticks(low: float, high: float, most: int) -> list[float]:
-    """Round numbers within [low, high], at most about ``most`` intervals apart."""
+def are_counts(unit: str, *values: NDArray[np.float64]) -> bool:
+    """Whole numbers of no unit: things are counted. They have no decimals, on axes and wherever else they are written."""
+    return not unit and all(np.array_equal(one, np.rint(one)) for one in values)
+
+
+def ticks(low: float, high: float, most: int, counts: bool = False) -> list[float]:
+    """Round numbers within [low, high], at most about ``most`` intervals apart; of counts whole ones."""
     if not (math.isfinite(low) and math.isfinite(high) and high > low):
         return []
     step = nice_ceiling((high - low) / max(most, 1))
+    step = max(step, 1.0) if counts and high - low >= 1.0 else step
     first = math.ceil(low / step - 1e-9)
     last = math.floor(high / step + 1e-9)
     return [index * step for index in range(first, last + 1)]
@@ -54,8 +60,14 @@ def number(value: float, decimals: int) -> str:
 
 
 def short_number(value: float, digits: int = 4) -> str:
-    """A number in no more digits than it has, as the present language writes it."""
-    return f"{value:.{digits}g}".replace("-", MINUS).replace(".", decimal_sign())
+    """A number in no more digits than it has, whole ones in full, as the present language writes it: 0.8, −0.35, 20000, 1e−8."""
+    if not math.isfinite(value):
+        return "—"
+    if value == int(value) and abs(value) < 1e7:
+        return str(int(value)).replace("-", MINUS)
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
+    text = f"{mantissa}e{int(power)}" if power else mantissa
+    return text.replace("-", MINUS).replace(".", decimal_sign())
 
 
 def percent(share: float, steps: tuple[float, ...] = ONE_TWO_FIVE) -> str:

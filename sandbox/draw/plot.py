@@ -9,7 +9,7 @@ import numpy as np
 import pygame
 
 from core.arrays import Floats
-from sandbox.draw.numbers import FINER, decimals_for, nice_ceiling, number, ticks
+from sandbox.draw.numbers import FINER, are_counts, decimals_for, nice_ceiling, number, ticks
 from sandbox.draw.painter import Painter
 from sandbox.draw.plot_marks import draw_event_key, draw_events, draw_names, names_width
 from sandbox.draw.text import BODY, SMALL
@@ -110,8 +110,7 @@ def unit_of(label: str) -> str:
 
 def value_digits(label: str, forces: Sequence[Floats], spread: float) -> int:
     """Decimals of a present value on an axis that long: none where things are counted."""
-    counted = not unit_of(label) and all(np.array_equal(one, np.rint(one)) for one in forces)
-    return 0 if counted else decimals_for(spread) + 2
+    return 0 if are_counts(unit_of(label), *forces) else decimals_for(spread) + 2
 
 
 def draw_plot(
@@ -138,8 +137,10 @@ def draw_plot(
     axes = limits([*parts, *(curve.ahead for curve in curves if curve.ahead is not None)], least)
     text = type_.height(SMALL)
     pad = round(8 * scale)
-    force_ticks = ticks(axes[2], axes[3], max(int((rect.height - 3 * text) / (1.6 * text)), 1))
-    if len(force_ticks) < 2:  # one number is no scale
+    counts = are_counts(unit_of(label), *(force for _, force in parts))
+    most = max(int((rect.height - 3 * text) / (1.6 * text)), 1)
+    force_ticks = ticks(axes[2], axes[3], most, counts)
+    if len(force_ticks) < 2 and not counts:  # one number is no scale
         force_ticks = [axes[2], axes[3]]
     force_digits = decimals_for(force_ticks[1] - force_ticks[0] if len(force_ticks) > 1 else 1.0)
     names = [number(value, force_digits) for value in force_ticks]
@@ -162,7 +163,9 @@ def draw_plot(
     )
     if box.rect.width < 10 or box.rect.height < 10:
         return None
-    _draw_axes(painter, box, force_ticks, names, stroke_label or words.STROKE_AXIS)
+    stroke_label = stroke_label or words.STROKE_AXIS
+    steps = are_counts(unit_of(stroke_label), *(stroke for stroke, _ in parts))
+    _draw_axes(painter, box, force_ticks, names, stroke_label, steps)
     if not any(stroke.size for stroke, _ in parts):
         painter.text(
             words.NO_CURVE, *box.rect.center, size=SMALL, colour=theme.soft_text, anchor="centre"
@@ -281,6 +284,7 @@ def _draw_axes(
     force_ticks: Sequence[float],
     names: Sequence[str],
     stroke_label: str,
+    counts: bool,
 ) -> None:
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     thin = max(round(scale), 1)
@@ -305,7 +309,7 @@ def _draw_axes(
     )
     free = box.rect.right - unit - round(14 * scale)
     widest = type_.width("0000", SMALL) * 2
-    stroke_ticks = ticks(box.low, box.high, max(box.rect.width // widest, 1))
+    stroke_ticks = ticks(box.low, box.high, max(box.rect.width // widest, 1), counts)
     step = stroke_ticks[1] - stroke_ticks[0] if len(stroke_ticks) > 1 else 1.0
     for value in stroke_ticks:
         x = float(box.x(value))

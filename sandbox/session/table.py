@@ -41,10 +41,11 @@ def _columns(setup: Setup) -> list[Column]:
     felt = setup.felt_label
     usual = Text("usual error, estimated: {quantity}", quantity=felt)
     most = Text("error that nine of ten stay within, estimated: {quantity}", quantity=felt)
+    counts = setup.curve is not None and setup.curve.force is None
     columns: list[Column] = [
         ("increment", attrgetter("increment")),
         (setup.stroke_label, attrgetter("stroke")),
-        (setup.force_label, attrgetter("resisting")),
+        (setup.force_label, attrgetter("grains_out" if counts else "resisting")),
         (usual, attrgetter("usual_error")),
         (most, attrgetter("force_error")),
         ("grains out", attrgetter("grains_out")),

@@ -12,10 +12,12 @@ from hypothesis import strategies as st
 from sandbox.draw.numbers import (
     FINER,
     RoundScale,
+    are_counts,
     decimals_for,
     nice_ceiling,
     number,
     percent,
+    short_number,
     ticks,
     typical_largest,
 )
@@ -89,3 +91,28 @@ def test_typical_largest_ignores_what_is_no_number() -> None:
     assert typical_largest(np.array([])) == 0.0
     assert typical_largest(np.array([np.nan, np.inf])) == 0.0
     assert typical_largest(np.linspace(0, 1, 101)) == pytest.approx(0.99)
+
+
+def test_what_is_counted_is_written_so() -> None:
+    whole, halves = np.array([0.0, 3.0, 54.0]), np.array([0.0, 0.5])
+    assert are_counts("", whole)
+    assert not are_counts("", whole, halves)
+    assert not are_counts("k R", whole)  # a force may be whole by chance
+    assert ticks(0.0, 1.0, 5, counts=True) == [0.0, 1.0]
+    assert ticks(0.0, 54.0, 4, counts=True) == [0.0, 20.0, 40.0]
+    assert ticks(0.0, 1.0, 5) == pytest.approx([0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (54.0, "54"),
+        (20_000, "20000"),
+        (123_456.0, "123456"),
+        (0.8, "0.8"),
+        (-0.35, "−0.35"),
+        (1e-8, "1e-8"),
+    ],
+)
+def test_whole_numbers_are_written_in_full(value: float, text: str) -> None:
+    assert short_number(value) == text.replace("e-", "e−")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pygame
 import pytest
 from numpy.typing import NDArray
 
@@ -71,6 +72,24 @@ def test_what_is_counted_has_no_decimals() -> None:
     assert value_digits("grains that have left", [whole, whole], 2.0) == 0
     assert value_digits("grains that have left", [whole, broken], 2.0) == 2
     assert value_digits("force on the piston [k R]", [whole], 2.0) == 2
+
+
+def test_axes_of_counts_have_whole_numbers(texts: list[tuple[str, pygame.Rect]]) -> None:
+    """One grain that has left in three increments: no half grain and no half increment on the axes."""
+    frame = replace(
+        intruder_frame(6),
+        curve_stroke=np.array([0.0, 1.0, 2.0, 3.0]),
+        curve_force=np.array([0.0, 0.0, 1.0, 1.0]),
+        curve_label="grains that have left",
+        stroke_label="increments",
+    )
+    renderer = Renderer((1280, 720), chains=False)
+    renderer.draw(frame)
+    plot = renderer.layout.plot
+    seen = [
+        text for text, rect in texts if plot.colliderect(rect) and text.strip("−0123456789.") == ""
+    ]
+    assert seen == ["1", "0", "1", "0", "1", "2"]  # the latest value, then both axes
 
 
 @pytest.mark.parametrize("points", [0, 1, 2, 3, 5000])

@@ -297,6 +297,15 @@ def test_a_number_is_typed(desk: Desk) -> None:
     assert desk.page() == "run"
 
 
+def test_a_whole_number_is_typed_on_from_all_its_digits(desk: Desk) -> None:
+    panel = desk.app.panel
+    panel._begin_edit(
+        Slider("solver/max_iterations", "", 1_000_000.0, 10, 1_000_000, 20_000, whole=True)
+    )
+    assert panel.edit is not None
+    assert panel.edit.text == "1000000"
+
+
 def test_letters_do_what_they_always_do_but_not_while_typing(desk: Desk) -> None:
     go_to(desk, NU)
     desk.key(pygame.K_t)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from sandbox.draw.numbers import MINUS, nice_ceiling
-from sandbox.words.words import decimal_sign
+from sandbox.draw.numbers import MINUS, nice_ceiling, short_number
 
 MANY_DECADES = 50.0  # a range with such a ratio of its ends goes by its logarithm
 WIDE = 5.0  # a range from zero to at least this is finer near zero
@@ -96,14 +95,8 @@ class Range:
 
 
 def shown(value: float) -> str:
-    """A number as short as it can be told, as the present language writes it: 0.8, −0.35, 8000, 1e−8."""
-    if not math.isfinite(value):
-        return "—"
-    if value == int(value) and abs(value) < 1e7:
-        return str(int(value)).replace("-", MINUS)
-    mantissa, _, power = f"{value:.4g}".partition("e")
-    text = f"{mantissa}e{int(power)}" if power else mantissa
-    return text.replace("-", MINUS).replace(".", decimal_sign())
+    """A number as it stands in a box: see ``short_number``."""
+    return short_number(value)
 
 
 def typed(text: str) -> str:

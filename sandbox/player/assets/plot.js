@@ -57,7 +57,8 @@ class Plot {
     g.fillStyle = css(theme.panel);
     g.fillRect(0, 0, canvas.width, canvas.height);
     g.font = `${letters}px ${FONT}`;
-    const marks = ticks(axes.bottom, axes.top, Math.max(Math.floor((canvas.height - 4 * letters) / (1.9 * letters)), 1));
+    const most = Math.max(Math.floor((canvas.height - 4 * letters) / (1.9 * letters)), 1);
+    const marks = ticks(axes.bottom, axes.top, most, run.panes.every((pane) => pane.counts));
     const digits = decimalsFor(marks.length > 1 ? marks[1] - marks[0] : 1);
     const gutter = Math.max(...marks.map((value) => g.measureText(number(value, digits)).width), 0) + 16 * s;
     const [left, top, right, bottom] = [gutter, 2.2 * letters, canvas.width - 14 * s, canvas.height - 1.9 * letters];
@@ -110,7 +111,8 @@ class Plot {
     const free = right - g.measureText(label).width - 14 * s;
     const line = bottom + letters;
     g.fillText(label, right, line);
-    const along = ticks(axes.low, axes.high, Math.max(Math.floor((right - left) / (6 * letters)), 1));
+    const counts = !labelParts(label)[1] && run.panes.every((pane) => pane.stroke.every(Number.isInteger));
+    const along = ticks(axes.low, axes.high, Math.max(Math.floor((right - left) / (6 * letters)), 1), counts);
     const places = decimalsFor(along.length > 1 ? along[1] - along[0] : 1);
     g.textAlign = "center";
     for (const value of along) {

@@ -38,9 +38,10 @@ function roundUp(value, steps = [1, 2, 5, 10]) {
   return (steps.find((step) => value <= step * power * (1 + 1e-9)) ?? 10) * power;
 }
 
-function ticks(low, high, most) {
+// Of what is counted: whole ones.
+function ticks(low, high, most, counts) {
   if (!(high > low)) return [];
-  const step = roundUp((high - low) / Math.max(most, 1));
+  const step = Math.max(roundUp((high - low) / Math.max(most, 1)), counts && high - low >= 1 ? 1 : 0);
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); k++) found.push(k * step);
   return found;

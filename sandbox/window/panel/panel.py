@@ -346,8 +346,8 @@ class Panel(Silent):
 
     def _begin_edit(self, control: Simple) -> None:
         match control:
-            case Slider(value=value):
-                text = f"{value:.6g}"
+            case Slider(value=value, whole=whole):
+                text = str(round(value)) if whole else f"{value:.6g}"
             case Stepper(value=value):
                 text = str(value)
             case TextField(text=text):
