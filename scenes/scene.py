@@ -354,10 +354,10 @@ FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leave
 # Increment and tolerance, for play and record alike, come from the work-precision plots of `study accuracy`, see
 # assets/studies/accuracy. At 1e-2 the force that a hand feels is off by as much as the model is (2 % with C = 50 against hard
 # contacts, up to 2.1 % by the contact law) in the press, the shear cell, the shrinking box and both hoppers; with friction the
-# increment is to blame for that, and no tolerance helps. Ten times tighter costs 1.7 to 3.3 times the time. The intruder's path
-# bifurcates within a few increments: up to there the force is within 5 %, beyond it single forces mean little and their mean over
-# seeds is within 4 %; 1e-3 takes one and a half pictures an increment instead of a half. Where 1e-2 is not enough and more is
-# cheap, the scene says so (avalanches). Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a
+# increment is to blame for that, and no tolerance helps. Ten times tighter costs 1.7 to 3.3 times the time. Where
+# that is not enough, or more is cheap, the scene says so (intruder, avalanches). The intruder's path bifurcates within a few
+# increments whatever the tolerance: beyond that single forces mean little, and means over seeds are what can be compared.
+# Nothing relaxes to more than a few digits in a picture: --set tolerance=1e-6 for a
 # measurement.
 SOLVER = (
     Parameter(
