@@ -196,6 +196,9 @@ def test_a_click_opens_the_same_bits() -> None:
         pass
     assert session.run.state_hash() == found.run["state"]
     assert np.array_equal(session.frame().x, pickle.loads(pickle.dumps(frame)).x)
+    below, above = frame.bounds[1], frame.bounds[3]
+    assert session.frame().bounds[1] < below < frame.y.min()
+    assert frame.y.max() < above <= session.frame().bounds[3]
 
 
 def test_it_stops_and_goes_on_where_it_was(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

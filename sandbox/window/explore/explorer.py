@@ -27,6 +27,7 @@ from sandbox.window.solvers.conductor import cores
 
 NICENESS = 10
 EVERY = 0.25  # [s] between two looks at all cells
+AROUND = 1.0  # what a small picture shows [R]
 log = logging.getLogger(__name__)
 
 
@@ -191,9 +192,26 @@ def carry_out_gently(job: Job) -> tuple[Found, Frame]:
 
 
 def bare(frame: Frame) -> Frame:
-    """A frame with no more than a small picture shows."""
+    """A frame with no more than a small picture shows: without the empty parts above and below."""
     none = np.empty(0)
-    return replace(frame, notices=(), events=(), settings={}, curve_stroke=none, curve_force=none)
+    left, bottom, right, top = frame.bounds
+    heights = [frame.y - frame.p, frame.y + frame.p]
+    for body in frame.bodies:
+        heights += [body.segments[:, 1], body.segments[:, 3], body.discs[:, 1]]
+        heights += [corners[:, 1] for corners in body.polygons]
+    there = np.concatenate(heights)
+    if len(there) and frame.box is None:
+        bottom = max(bottom, float(there.min()) - AROUND)
+        top = min(top, float(there.max()) + AROUND)
+    return replace(
+        frame,
+        bounds=(left, bottom, right, top),
+        notices=(),
+        events=(),
+        settings={},
+        curve_stroke=none,
+        curve_force=none,
+    )
 
 
 def shown(cell: Cell) -> MapCell:
