@@ -11,6 +11,7 @@ from typing import Any
 import pygame
 import pytest
 
+from sandbox.draw.pages.explore_page import MapCell
 from sandbox.session.commands import Change, Grab, Move, Protocol
 from sandbox.session.history import Event
 from sandbox.window.access import reader as reader_module
@@ -67,6 +68,9 @@ def pages(desk: Desk) -> Iterator[tuple[str, Tree]]:
     desk.key(pygame.K_h)
     yield "help", seen(desk)
     desk.key(pygame.K_h)
+    desk.key(pygame.K_x)
+    yield "explore", seen(desk)
+    desk.key(pygame.K_ESCAPE)
     app.pages.open_menu()
     app.tick()
     yield "menu", seen(desk)
@@ -187,6 +191,30 @@ def test_the_export_question_is_answered(desk: Desk, monkeypatch: pytest.MonkeyP
     desk.key(pygame.K_e)
     do(desk, "question/1")
     assert given == [1]
+
+
+def test_a_map_is_asked_for_and_a_cell_of_it_opened(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk.key(pygame.K_x)
+    page = desk.app.pages.explore
+    before = seen(desk).nodes["explore/0high"].text
+    do(desk, "explore/0high/less")
+    assert seen(desk).nodes["explore/0high"].text != before
+    assert seen(desk).focus == "explore/0high"
+    went: list[bool] = []
+    monkeypatch.setattr(page, "go_or_stop", lambda: went.append(True))
+    do(desk, "explore/go")
+    assert went == [True]
+    first, second = (side.values() for side in page._sides)
+    cell = MapCell((first[0], second[0]), 0.5, (0.2, 0.8), 10, 10, 1, "clog")
+    progress = replace(page.explorer.progress, cells=(cell,))
+    monkeypatch.setattr(page.explorer, "progress", progress)
+    taken: list[MapCell | None] = []
+    monkeypatch.setattr(page, "take", lambda cell, beside: taken.append(cell))
+    assert seen(desk).nodes["explore/cell/1"].label == page.about(cell)
+    do(desk, "explore/cell/1")
+    assert taken == [cell]
 
 
 # -- what is said --

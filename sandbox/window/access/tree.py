@@ -13,6 +13,7 @@ from sandbox.draw.pages.tour_card import FIELD, OPTION
 from sandbox.draw.widgets.controls import Heading
 from sandbox.draw.widgets.scale import shown
 from sandbox.session.frame import Frame
+from sandbox.window.access import explore
 from sandbox.window.access.controls import chosen, nodes_of
 from sandbox.window.access.handles import nodes_of_handle
 from sandbox.window.access.node import ROOT, Do, Node, Number, button, changes, edges, label
@@ -99,10 +100,10 @@ class Tree:
         return close.name
 
     def _explore(self) -> str:
+        page = self._parts.pages.explore
         close = button("explore/close", words.CLOSE, self._act(Action.BACK))
-        hint = label("explore/hint", words.EXPLORE_HINT)
-        self._group("explore", "GROUP", words.EXPLORE, [hint, close])
-        return close.name
+        self._group(explore.NAME, "GROUP", page.title, [close, *explore.nodes_of_explore(page)])
+        return explore.chosen(page)
 
     def _menu(self) -> str:
         pages, stage = self._parts.pages, self._parts.stage

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import pygame
+
 from core.errors import InputError
 from sandbox.draw.numbers import short_number
 from sandbox.draw.pages.explore_page import ExplorePlaces, Line, MapCell, Shown, draw_explore
@@ -12,7 +14,7 @@ from sandbox.draw.painter import Painter
 from sandbox.session.commands import Protocol
 from sandbox.sweep.request import Axis, Job, Request, check
 from sandbox.window.explore.ends import Ends
-from sandbox.window.explore.explorer import Explorer, Progress
+from sandbox.window.explore.explorer import Explorer
 from sandbox.window.explore.side import Side
 from sandbox.window.keys import Action
 from sandbox.window.solvers.panes import Wanted
@@ -46,7 +48,7 @@ class ExplorePage:
         self._parameters: list[Parameter] = []
         self._sides: list[Side] = []
         self._seeds = 10
-        self._chosen = BUTTON
+        self.chosen = BUTTON
         self._said = ""
         self._places = ExplorePlaces()
         self._seen = self.explorer.progress
@@ -98,33 +100,52 @@ class ExplorePage:
 
     def act(self, action: Action) -> bool:
         """A key; True if it was meant for this page."""
-        names = [line.name for line in self._lines()]
+        names = [line.name for line in self.lines()]
         if action in (Action.BACK, Action.EXPLORE):
             self.close()
         elif action is Action.NEXT_VIEW:
             self.show_ends_or_shares()
         elif action is Action.COMPARE:
-            self._take(self._cell_at(self._pointed), beside=True)
-        elif self._chosen == MAP and action in ARROWS:
+            self.take(self._cell_at(self._pointed), beside=True)
+        elif self.chosen == MAP and action in ARROWS:
             self._move(*ARROWS[action])
-        elif self._chosen == MAP and action in (Action.ENTER, Action.PAUSE):
-            self._take(self._cell_at(self._pointed), beside=False)
+        elif self.chosen == MAP and action in (Action.ENTER, Action.PAUSE):
+            self.take(self._cell_at(self._pointed), beside=False)
         elif action in (Action.UP, Action.DOWN):
             way = 1 if action is Action.DOWN else -1
-            here = names.index(self._chosen) if self._chosen in names else 0
-            self._chosen = names[(here + way) % len(names)]
+            here = names.index(self.chosen) if self.chosen in names else 0
+            self.chosen = names[(here + way) % len(names)]
         elif action in (Action.LEFT, Action.RIGHT):
-            self._change(self._chosen, 1 if action is Action.RIGHT else -1)
+            self.change(self.chosen, 1 if action is Action.RIGHT else -1)
         elif action in (Action.ENTER, Action.PAUSE):
-            self.press(self._chosen)
+            self.press(self.chosen)
         else:
             return False
         return True
 
+    def choose(self, name: str) -> None:
+        """Give the keyboard to a line."""
+        self.chosen = name
+        self.stage.redraw(True)
+
+    @staticmethod
+    def is_button(name: str) -> bool:
+        """Is that line pressed, and not changed?"""
+        return name in (BUTTON, SHOW)
+
+    @property
+    def pointed(self) -> MapCell | None:
+        """The cell that the keys are at, if they are at one that is known."""
+        return self._cell_at(self._pointed) if self.chosen == MAP else None
+
+    def place_of(self, cell: MapCell) -> pygame.Rect | None:
+        """Where a cell is in the window [px]."""
+        return self._places.cells.get(cell.values)
+
     def tab(self) -> None:
         """From what is asked to the map, and back."""
-        self._chosen = BUTTON if self._chosen == MAP else MAP
-        if self._chosen == MAP and self._pointed is None:
+        self.chosen = BUTTON if self.chosen == MAP else MAP
+        if self.chosen == MAP and self._pointed is None:
             self._pointed = next(iter(self._places.cells), None)
 
     def hover(self, place: tuple[int, int]) -> None:
@@ -146,19 +167,19 @@ class ExplorePage:
         """The mouse was pressed there; ``beside``: with Shift."""
         for (name, way), rect in self._places.arrows.items():
             if rect.collidepoint(place):
-                self._chosen = name
-                self._change(name, way)
+                self.chosen = name
+                self.change(name, way)
                 return
         for name, rect in self._places.lines.items():
             if rect.collidepoint(place):
-                self._chosen = name
-                if name in (BUTTON, SHOW):
+                self.chosen = name
+                if self.is_button(name):
                     self.press(name)
                 return
         for values, rect in self._places.cells.items():
             if rect.collidepoint(place):
                 self._pointed = values
-                self._take(self._cell_at(values), beside=beside)
+                self.take(self._cell_at(values), beside=beside)
                 return
 
     def go_or_stop(self) -> None:
@@ -196,7 +217,7 @@ class ExplorePage:
             second[min(max(row, 0), len(second) - 1)],
         )
 
-    def _take(self, cell: MapCell | None, *, beside: bool) -> None:
+    def take(self, cell: MapCell | None, *, beside: bool) -> None:
         """Open a run of a cell, or put it ``beside`` the one that was opened, or marked, before."""
         if cell is None:
             return
@@ -229,7 +250,7 @@ class ExplorePage:
         """Where its tables go: the same for the same request, so that it goes on; more seeds may be asked for."""
         return Path(f"sandbox-explore-{self._scene}-{request.key()[:6]}")
 
-    def _change(self, name: str, way: int) -> None:
+    def change(self, name: str, way: int) -> None:
         """One step of a line to the left or the right; the map is another then."""
         if name == SHOW:
             self.show_ends_or_shares()
@@ -266,34 +287,40 @@ class ExplorePage:
 
     # -- what is shown --
 
+    @property
+    def title(self) -> str:
+        """Of the scene and the packing that the map is of."""
+        return words.EXPLORE_TITLE.format(
+            scene=words.title(self._scene, registry.get(self._scene).title),
+            packing=words.PACKINGS.get(self._packing, self._packing),
+        )
+
     def draw(self, painter: Painter) -> None:
         """Draw the whole page."""
         progress = self.explorer.progress
         self._ends.begin(painter.theme.name, progress.frames)
-        title = words.EXPLORE_TITLE.format(
-            scene=words.title(self._scene, registry.get(self._scene).title),
-            packing=words.PACKINGS.get(self._packing, self._packing),
-        )
         first, second = self._sides
         self._places = draw_explore(
             painter,
             Shown(
-                title,
-                self._lines(),
-                self._chosen,
+                self.title,
+                self.lines(),
+                self.chosen,
                 (_titled(first.parameter), _titled(second.parameter)),
                 (first.values(), second.values()),
                 progress.cells,
                 self._seeds,
-                self._status(progress),
+                self.status,
                 self._ends.picture if self.explorer.pictures else None,
                 self._pointed,
                 0 if self._first is None else self._first.row,
             ),
         )
 
-    def _status(self, progress: Progress) -> str:
+    @property
+    def status(self) -> str:
         """What went wrong, or about the cell that is pointed at, or how far it is, or what one can do."""
+        progress = self.explorer.progress
         if progress.error or self._said:
             return self._said or progress.error
         cell = self._cell_at(self._pointed)
@@ -302,7 +329,7 @@ class ExplorePage:
                 where=self._where(self._first.settings), seed=self._first.seed
             )
         if cell is not None:
-            return self._about(cell)
+            return self.about(cell)
         if not progress.cells and not progress.at_work:
             return words.EXPLORE_HINT
         request = self.request()
@@ -310,7 +337,7 @@ class ExplorePage:
             done=progress.done, runs=request.runs, folder=self.folder(request)
         )
 
-    def _about(self, cell: MapCell) -> str:
+    def about(self, cell: MapCell) -> str:
         """Where it is, its share with the interval, and what a click opens."""
         job = self.request().job(cell.row)
         outcome = words.OUTCOMES.get(cell.outcome, cell.outcome)
@@ -332,7 +359,8 @@ class ExplorePage:
             for name in names
         )
 
-    def _lines(self) -> list[Line]:
+    def lines(self) -> list[Line]:
+        """What can be changed."""
         lines = []
         for number, (side, title) in enumerate(
             zip(self._sides, (words.EXPLORE_ACROSS, words.EXPLORE_UP), strict=True)
