@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.errors import InputError
+from sandbox.draw.marks import marks
 from sandbox.draw.numbers import FINER, nice_ceiling, typical_largest
 from sandbox.draw.views import VIEWS, View
 from sandbox.player import series
@@ -67,8 +68,7 @@ def recording(tape: Tape) -> bytes:
         "views": [_view(view, tops) for view in VIEWS.values()],
         "tops": {"chains": tops.force, "hand": tops.hand},
         "panes": [
-            _pane(writer, texts, kept, frame, tops)
-            for kept, frame in zip(panes, tape.last, strict=True)
+            _pane(writer, texts, kept, tape.last, place, tops) for place, kept in enumerate(panes)
         ],
         "texts": texts.all,
     }
@@ -76,15 +76,22 @@ def recording(tape: Tape) -> bytes:
 
 
 def _pane(
-    writer: Writer, texts: Texts, moments: Sequence[Kept], last: Frame, tops: Tops
+    writer: Writer,
+    texts: Texts,
+    moments: Sequence[Kept],
+    frames: Sequence[Frame],
+    place: int,
+    tops: Tops,
 ) -> dict[str, Any]:
+    last = frames[place]
     written = series.grains(writer, moments, tops)
     labels = written["labels"]
     stroke, force = _finite(last.curve_stroke), _finite(last.curve_force)
     increments = [kept.increment for kept in moments]
     return {
         "packing": last.packing,
-        "title": in_each(lambda: words.PACKINGS.get(last.packing, last.packing)),
+        "title": in_each(lambda: marks(frames)[place].name),
+        "dash": marks(frames)[place].dash,
         "grains": written,
         "contacts": series.contacts(writer, moments, labels, tops.force),
         "bodies": series.bodies(writer, moments),

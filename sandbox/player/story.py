@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sandbox.draw.marks import marks
 from sandbox.draw.numbers import decimals_for, number
 from sandbox.player.tape import Tape
 from sandbox.session.frame import Frame
@@ -22,26 +23,22 @@ def story(tape: Tape) -> list[str]:
     """Paragraphs in the present language: what was run, then what each packing did."""
     frames = tape.last
     first = frames[0]
+    names = [mark.name for mark in marks(frames)]
     head = PLAYER["story_one" if len(frames) == 1 else "story_several"].format(
         title=words.title(first.scene, first.title),
-        packings=listed([name_of(frame) for frame in frames]),
+        packings=listed(names),
         grains=_count([kept.size for kept in tape.moments[0]]),
         seed=first.seed,
         increments=tape.increments,
     )
     if len(tape.moments) <= tape.increments:
         head += " " + PLAYER["story_thinned"].format(count=len(tape.moments))
-    return [head, *(_of(frame) for frame in frames)]
+    return [head, *map(_of, frames, names)]
 
 
 def _count(sizes: Sequence[int]) -> str:
     """``160``, or ``1–2`` where packings differ."""
     return "–".join(map(str, sorted({min(sizes), max(sizes)})))
-
-
-def name_of(frame: Frame) -> str:
-    """The packing's name."""
-    return words.PACKINGS.get(frame.packing, frame.packing)
 
 
 def listed(items: Sequence[str]) -> str:
@@ -57,7 +54,7 @@ def label_parts(label: str) -> tuple[str, str]:
     return (name, unit.removesuffix("]")) if bracket else (label, "")
 
 
-def _of(frame: Frame) -> str:
+def _of(frame: Frame, name: str) -> str:
     said = [_force(frame)]
     if frame.grains_out:
         said.append(PLAYER["story_out"].format(count=frame.grains_out))
@@ -68,7 +65,7 @@ def _of(frame: Frame) -> str:
         first, *others = (_sentence(words.say(notice)) for notice in frame.notices)
         text = " ".join([first, *map(_capital, others)])
         said.append(PLAYER["story_end"].format(text=text))
-    return f"{_capital(name_of(frame))}: {' '.join(said)}"
+    return f"{_capital(name)}: {' '.join(said)}"
 
 
 def _force(frame: Frame) -> str:

@@ -67,6 +67,18 @@ def recorded(text: str) -> tuple[dict[str, Any], bytes]:
     return unpacked(base64.b64decode(found[1]))
 
 
+def test_runs_of_one_packing_are_told_apart(moments: list[list[Frame]]) -> None:
+    """By what is set otherwise in them: in the story and above their pictures, and their curves by dashes."""
+    one = moments[0][0]
+    other = replace(one, settings={**one.settings, "friction": 0.5})
+    tape = taped([[one, other]])
+    head, _ = recorded(page(tape))
+    titles = [pane["title"][0] for pane in head["panes"]]
+    assert titles == [f"friction {value:g}" for value in (one.settings["friction"], 0.5)]
+    assert head["panes"][0]["dash"] != head["panes"][1]["dash"]
+    assert " and ".join(titles) in story(tape)[0]
+
+
 def test_what_is_read_back_is_what_was_shown(moments: list[list[Frame]]) -> None:
     head, blocks = recorded(page(taped(moments)))
     assert head["increments"] == [0, 1, 2, 3, 4, 5]

@@ -2,7 +2,7 @@
 
 function makePanes() {
   run.panes.forEach((pane, index) => {
-    pane.look = run.packings[pane.packing] ?? run.packings.mixed;
+    pane.look = { ...(run.packings[pane.packing] ?? run.packings.mixed), dash: pane.dash };
     pane.pressureTop = run.views.find((each) => each.name === "pressure").top;
     pane.canvas = element("canvas", { role: "img" });
     pane.nodes = {};
