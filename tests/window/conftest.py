@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from sandbox.files import autosave, preferences
+from sandbox.window.access import reader
 from sandbox.words import language
 
 
@@ -33,9 +34,10 @@ def own_preferences(
 
 @pytest.fixture(autouse=True)
 def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Drivers that show and play nothing; English before and after, whatever a test switches to."""
+    """Drivers that show and play nothing, and no screen reader; English before and after, whatever a test switches to."""
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+    monkeypatch.setattr(reader, "accesskit", None)
     language.use(language.SOURCE)
     yield
     language.use(language.SOURCE)

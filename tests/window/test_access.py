@@ -251,6 +251,24 @@ def test_a_lesson_says_what_comes_next(desk: Desk) -> None:
     assert page.say not in later
 
 
+def test_a_long_wait_is_told_and_its_end(desk: Desk) -> None:
+    speech = Speech(desk.app.stage, desk.app.guide)
+    ready = desk.app.stage.panes.snapshot
+    assert ready.frame is not None
+    building = replace(ready, phase="building", text="compiling", frame=None)
+    for snapshot, now, said in (
+        (ready, 0.0, []),
+        (building, 1.0, []),
+        (building, 1.5, []),
+        (building, 2.5, ["compiling"]),
+        (building, 3.5, []),
+        (ready, 4.0, [words.title("intruder", ready.frame.title)]),
+        (ready, 5.0, []),
+    ):
+        speech.stage = SimpleNamespace(panes=SimpleNamespace(snapshot=snapshot))  # type: ignore[assignment]
+        assert list(speech._from_the_build(now)) == said
+
+
 # -- the way to AccessKit --
 
 

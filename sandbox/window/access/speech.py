@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 
 from sandbox.draw.marks import marks
 from sandbox.window.guide import Guide
 from sandbox.window.stage import Stage
 from sandbox.words import words
+
+LONG = 1.0  # a wait that is told of [s]
 
 
 class Speech:
@@ -18,6 +21,8 @@ class Speech:
         self._notices = 0
         self._events: dict[int, int] = {}  # of a pane that are known
         self._card: tuple[str, ...] = ()
+        self._build: tuple[str, float] = ("", 0.0)  # what is being built, and since when [s]
+        self._told = ""  # what has been said of it
 
     def begin(self) -> None:
         """Somebody listens from now on: what was before is not said."""
@@ -28,6 +33,7 @@ class Speech:
         """What is to be said, in the order in which it came."""
         yield from self._from_the_card()
         yield from self._from_the_runs()
+        yield from self._from_the_build(time.perf_counter())
         notices = self.stage.notices
         fresh, self._notices = notices.count - self._notices, notices.count
         if fresh:
@@ -41,6 +47,19 @@ class Speech:
             card = page.say, page.ask, page.hint, page.do, page.why
         before, self._card = self._card, card
         yield from (text for text in card if text and text not in before)
+
+    def _from_the_build(self, now: float) -> Iterator[str]:
+        """What one waits for, if it takes long; and then that it is there."""
+        snapshot = self.stage.panes.snapshot
+        text = words.say(snapshot.text) if snapshot.phase == "building" else ""
+        if text != self._build[0]:
+            self._build = text, now
+        if text and text != self._told and now - self._build[1] > LONG:
+            self._told = text
+            yield text
+        elif not text and self._told and snapshot.frame is not None:
+            self._told = ""
+            yield words.title(snapshot.frame.scene, snapshot.frame.title)
 
     def _from_the_runs(self) -> Iterator[str]:
         frames = [pane[0] for pane in self.stage.picture.panes()]
