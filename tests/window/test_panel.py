@@ -9,7 +9,7 @@ from dataclasses import replace
 import pygame
 import pytest
 
-from sandbox.draw.text import SMALL, Type
+from sandbox.draw.text import BODY, SMALL, Type
 from sandbox.draw.widgets.controls import (
     PAD,
     Button,
@@ -575,6 +575,27 @@ def test_clipboard_by_place_where_letters_are_others() -> None:
     paste = {"key": ord("м"), "scancode": pygame.KSCAN_V, "unicode": "м", "mod": CTRL}
     edit.key(pygame.event.Event(pygame.KEYDOWN, paste))
     assert edit.text == "oneone"
+
+
+def test_a_click_puts_the_caret_between_letters(desk: Desk) -> None:
+    desk.app.panel.folded.clear()
+    desk.app.tick()
+    box(desk, "files/name")
+    place = desk.app.panel._places.named("files/name")
+    assert place is not None
+    type_ = desk.app.stage.renderer.type
+    inside = parts_of(place.control, place.rect, type_).box.move(
+        desk.app.panel.rect.left, desk.app.panel.rect.top - desk.app.panel.scroll
+    )
+    desk.click(inside.center)
+    desk.type("abcdef")
+    desk.click((inside.left + 8 + type_.width("abc", BODY), inside.centery))
+    desk.type("-")
+    assert desk.app.panel.edit is not None
+    assert desk.app.panel.edit.text == "abc-def"
+    desk.click((inside.right - 2, inside.centery))
+    desk.key(pygame.K_BACKSPACE)
+    assert desk.app.panel.edit.text == "abc-de"
 
 
 def test_an_input_method_has_the_keys_while_it_composes(desk: Desk) -> None:

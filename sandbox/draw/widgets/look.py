@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.draw.painter import Painter
 from sandbox.draw.signs import SIGNS, draw_sign
-from sandbox.draw.text import BODY, SMALL
+from sandbox.draw.text import BODY, SMALL, Type
 from sandbox.draw.theme import HAND, Theme, mix
 from sandbox.draw.widgets.controls import (
     BARS,
@@ -199,20 +199,40 @@ def _draw_box(
     if attention.typing is not None and attention.typing.name == name:
         edge = theme.text
         painter.box(inner, theme.ground, radius=CORNER * scale, edge=edge, edge_width=2 * scale)
-        _draw_typing(painter, inner.inflate(-round(16 * scale), 0), attention.typing)
+        _draw_typing(painter, _room(rect, type_), attention.typing)
         return
     _field(painter, inner, hover)
     shown_text = type_.shortened(text, BODY, inner.width - round(16 * scale))
     painter.text(shown_text, *inner.center, anchor="centre")
 
 
+def _room(box: pygame.Rect, type_: Type) -> pygame.Rect:
+    """Of a text that is typed, within its box."""
+    return box.inflate(-round(16 * type_.scale), -round(6 * type_.scale))
+
+
+def _left_edge(typing: Typing, room: pygame.Rect, type_: Type) -> int:
+    """Of the text, shifted so that the caret stays in view [px]."""
+    at = typing.caret
+    text = typing.text[:at] + typing.composed + typing.text[at:]
+    caret = type_.caret(text, at + len(typing.composed), BODY)
+    return room.left - max(caret - room.width, 0)
+
+
+def character_at(typing: Typing, box: pygame.Rect, x: int, type_: Type) -> int:
+    """Before which character a press at ``x`` [px] in the box puts the caret."""
+    along = x - _left_edge(typing, _room(box, type_), type_)
+    places = range(len(typing.text) + 1)
+    return min(places, key=lambda place: abs(type_.caret(typing.text, place, BODY) - along))
+
+
 def _draw_typing(painter: Painter, room: pygame.Rect, typing: Typing) -> None:
-    """The text, shifted so that the caret stays in view; what is selected has a ground, what is composed a line."""
+    """The text; what is selected has a ground, what an input method composes a line."""
     scale, type_ = painter.scale, painter.type
     at, composed = typing.caret, typing.composed
     text = typing.text[:at] + composed + typing.text[at:]
     caret = type_.caret(text, at + len(composed), BODY)
-    shift = room.left - max(caret - room.width, 0)
+    shift = _left_edge(typing, room, type_)
     view = room.inflate(round(4 * scale), 0)
     half = round(0.4 * type_.height(BODY))
     marks = [(typing.anchor, at, -half, 2 * half)] if not composed else []

@@ -76,17 +76,28 @@ class Reader:
     # -- once a picture --
 
     def watch(self, event: pygame.event.Event) -> None:
-        """The window got the keyboard, or lost it."""
-        if self._adapter is None or event.type not in (
-            pygame.WINDOWFOCUSGAINED,
-            pygame.WINDOWFOCUSLOST,
-        ):
+        """The window got the keyboard, or lost it, or is elsewhere."""
+        if self._adapter is None:
+            return
+        if event.type in (pygame.WINDOWMOVED, pygame.WINDOWSIZECHANGED, pygame.WINDOWSHOWN):
+            self._tell_place()
+        if event.type not in (pygame.WINDOWFOCUSGAINED, pygame.WINDOWFOCUSLOST):
             return
         has_it = event.type == pygame.WINDOWFOCUSGAINED
         if sys.platform == "darwin":
             self._raise(self._adapter.update_view_focus_state(has_it))
         elif sys.platform != "win32":
             self._adapter.update_window_focus_state(has_it)
+
+    def _tell_place(self) -> None:
+        """Where the window is on the screen, which AT-SPI does not know by itself."""
+        if sys.platform not in ("win32", "darwin"):
+            (left, top), (width, height) = (
+                pygame.display.get_window_position(),
+                pygame.display.get_window_size(),
+            )
+            place = accesskit.Rect(*map(float, (left, top, left + width, top + height)))
+            self._adapter.set_root_window_bounds(place, place)
 
     def tick(self, now: float) -> None:
         """Do what was asked, and tell what has changed."""

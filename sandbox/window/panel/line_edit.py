@@ -46,6 +46,10 @@ class Edit:
         """What is written next replaces all of it."""
         self.anchor, self.caret = 0, len(self.text)
 
+    def put_caret(self, place: int) -> None:
+        """Before that character; nothing is selected."""
+        self.caret = self.anchor = place
+
     def write(self, text: str) -> None:
         """In place of what is selected, as far as there is room; what cannot be printed is left out."""
         start, end = self.selected

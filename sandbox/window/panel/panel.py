@@ -25,7 +25,7 @@ from sandbox.draw.widgets.controls import (
     parts_of,
     slid_to,
 )
-from sandbox.draw.widgets.look import Attention, Typing
+from sandbox.draw.widgets.look import Attention, Typing, character_at
 from sandbox.draw.widgets.panel_frame import draw_tab, foot_height, panel_picture
 from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
@@ -292,6 +292,11 @@ class Panel(Silent):
         if isinstance(control, (Slider, Stepper, TextField)) and parts.box.collidepoint(at):
             if self.edit is None:
                 self._begin_edit(control)
+            else:
+                at_character = character_at(
+                    self._typing(self.edit), parts.box, at[0], self.stage.renderer.type
+                )
+                self.edit.put_caret(at_character)
             return
         value = pressed(control, parts, at)
         if value is not None:
@@ -356,6 +361,11 @@ class Panel(Silent):
                 text = ""
         self.edit = Edit.of(control.name, text)
 
+    @staticmethod
+    def _typing(edit: Edit) -> Typing:
+        """For drawing."""
+        return Typing(edit.name, edit.text, edit.caret, edit.anchor, edit.composed)
+
     def _finish_edit(self) -> None:
         """Hand over what was typed, if anything was."""
         edit, self.edit = self.edit, None
@@ -391,8 +401,7 @@ class Panel(Silent):
         focus = self.stage.focus
         attention = Attention(focus.ring, self._hover)
         if (edit := self.edit) is not None:
-            typed = Typing(edit.name, edit.text, edit.caret, edit.anchor, edit.composed)
-            attention = replace(attention, typing=typed)
+            attention = replace(attention, typing=self._typing(edit))
             if (
                 place := self.place_of(edit.name)
             ) is not None:  # where an input method shows its own
