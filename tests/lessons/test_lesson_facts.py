@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -17,6 +18,7 @@ from core import observables
 from sandbox.lessons import classroom
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
+from sandbox.studies.hand.tour_claims import play_lesson
 from sandbox.window.measure.gauges import force_through
 from scenes.couette import plate_stresses
 from scenes.grain_row import free_room
@@ -416,3 +418,17 @@ def test_overlaps_take_two_over_c_of_an_approach() -> None:
     approach = float(session.history.curve[0, -1])
     shrunk = -2.0 * strains(session)[0]  # of a diameter of 2 R
     assert (approach - shrunk) / approach == pytest.approx(0.04, abs=0.003)
+
+
+# -- all of it by hand --
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", classroom.names())
+def test_every_step_can_be_done(name: str) -> None:
+    lesson = classroom.lesson(name)
+    if name == "arches":  # what waits for shaking, the scripted drive does, in a test of its own
+        lesson = replace(lesson, steps=tuple(s for s in lesson.steps if s.key != "shake"))
+    for step in play_lesson(lesson, 1, {}):
+        assert step["done"], step
+        assert not step["broken"], step
