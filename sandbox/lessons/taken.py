@@ -13,6 +13,7 @@ from scenes.parameter import shown
 
 T = TypeVar("T")
 MISSING = object()
+FIRM = "\u00a0"  # a space where no line is broken
 CODE = 2  # letters of a language's code
 
 
@@ -93,7 +94,7 @@ def line_of(value: object, most: int, where: str) -> str:
     """A text without control characters, of at most so many letters."""
     if not isinstance(value, str):
         raise InputError(f"{where} must be a text in quotes, not {shown(value)}")
-    odd = next((sign for sign in value if not sign.isprintable()), None)
+    odd = next((sign for sign in value if not (sign.isprintable() or sign == FIRM)), None)
     if odd is not None:
         raise InputError(
             f"{where} has a line break or another sign that cannot be shown, {odd!r}; take it out"

@@ -105,8 +105,13 @@ class Guide(Silent):
         elif not self._last:
             self._go(self.index + 1)
         else:
+            over = (
+                words.LESSON_OVER
+                if self.lesson is not None and self.lesson.title
+                else words.TOUR_OVER
+            )
             self.close()
-            self.stage.toast(words.TOUR_OVER)
+            self.stage.toast(over)
         self.stage.redraw(True)
 
     def _keep(self) -> None:
@@ -307,6 +312,7 @@ class Guide(Silent):
                 chosen=asking.chosen,
                 field=asking.field,
                 hint=asking.hint,
+                ready=asking.given is not None,
             )
         do, why = str(step.do), self._why(step)
         waiting = bool(do and why and not self.done and not self.told)

@@ -70,6 +70,9 @@ class Picture:
         lit = self._lights(frames, now)
         first = next(frame for frame in frames if frame is not None)
         several = len(snapshots) > 1
+        # Curves of earlier runs would tell what is to be sketched.
+        sketching = self._renderer.plot_least is not None
+        kept = () if sketching else self._panes.curves.shown(first)
         self._renderer.draw(
             frames,
             hand=hand,
@@ -77,7 +80,7 @@ class Picture:
             paused=self._panes.paused,
             notices=notices,
             told=[_told(seen) for seen in snapshots] if several else (),
-            kept=[kept_curve(kept) for kept in self._panes.curves.shown(first)],
+            kept=[kept_curve(curve) for curve in kept],
             flashes=lit,
         )
 

@@ -47,6 +47,7 @@ class TourPage:
     chosen: int | None = None  # one of them
     field: Field | None = None  # or a number
     hint: str = ""  # how to answer
+    ready: bool = True  # nothing is asked, or it is answered
 
     @property
     def first(self) -> bool:
@@ -165,20 +166,11 @@ def draw_tour_card(
                 painter,
                 text,
                 places.buttons[name].move(rect.topleft),
-                strong=name == NEXT and (page.done or not page.do) and _answered(page),
+                strong=name == NEXT and (page.done or not page.do) and page.ready,
                 ring=focus == name,
                 hover=hover == name,
             )
     _draw_close(painter, close, ring=focus == CLOSE, hover=hover == CLOSE)
-
-
-def _answered(page: TourPage) -> bool:
-    """Is there an answer, if there is a question?"""
-    return (
-        not page.ask
-        or page.chosen is not None
-        or (page.field is not None and bool(page.field.text))
-    )
 
 
 def _draw_option(painter: Painter, rect: pygame.Rect, on: bool, ring: bool, hover: bool) -> None:
