@@ -23,6 +23,7 @@ from sandbox.draw.widgets.controls import (
 from sandbox.draw.widgets.look import Attention, draw_control
 from sandbox.draw.widgets.panel_frame import FOOT_LINES
 from sandbox.session.commands import Change, Command, Protocol, Reset
+from sandbox.window.display import is_fullscreen
 from sandbox.window.panel.line_edit import Edit
 from sandbox.window.panel.panel import Panel
 from sandbox.window.panel.parameters import ParameterSection, Wishes
@@ -225,7 +226,8 @@ def effects(desk: Desk) -> tuple[object, ...]:
     """All that the panel can change."""
     renderer = desk.app.stage.renderer
     looks = renderer.view.name, renderer.chains, renderer.theme.name, renderer.scale
-    return len(sent(desk)), *looks, language.present(), desk.app.stage.still
+    switched = desk.app.stage.still, is_fullscreen()
+    return len(sent(desk)), *looks, language.present(), *switched
 
 
 def test_buttons_by_enter_and_space(desk: Desk) -> None:
