@@ -170,7 +170,7 @@ def test_a_log_that_cannot_be_written_leaves_the_autosave(
         assert time.monotonic() < end
         time.sleep(0.005)
     assert run.tick() == ""
-    with pytest.raises(InputError, match=r"it.jsonl: No .*kept"):
+    with pytest.raises(InputError, match=r"it.jsonl: no .*kept"):
         run.close()
     (leftover,) = find(tmp_path / "autosave").leftovers
     assert leftover.grains == 1

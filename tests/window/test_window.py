@@ -347,7 +347,7 @@ def test_screenshot_that_cannot_be_saved_says_so(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(display, "atomic_write", full)
     running.key(pygame.K_F12)
-    assert "No space left" in running.app.stage.notices.latest
+    assert "no space left" in running.app.stage.notices.latest
     assert list(tmp_path.iterdir()) == []
 
 
