@@ -58,16 +58,18 @@ def draw_header(
     widths = [sum(part.width + gap for part in parts) for parts in choices]
     room = right - left
     fitting = [k for k, width in enumerate(widths[:-1]) if title + width <= room]
-    # Where nothing fits beside the whole title, it gives way to what says enough.
-    fitting += [k for k in range(enough, len(widths)) if widths[k] <= room]
+    # Where nothing fits beside the title, that is written smaller, beside what says enough.
+    least = type_.width(name, SMALL / scale, bold=True)
+    fitting += [k for k in range(enough, len(widths)) if least + widths[k] <= room]
     x = float(right)
     if fitting:
         for part in reversed(choices[fitting[0]]):
             x -= part.width
             part.draw(x, rect.centery)
             x -= gap
-    shown = type_.shortened(name, HEADING, x - left, bold=True)
-    painter.text(shown, left, rect.centery, size=HEADING, bold=True)
+    size = type_.fitting(name, HEADING, x - left, bold=True)
+    shown = type_.shortened(name, size, x - left, bold=True)
+    painter.text(shown, left, rect.centery, size=size, bold=True)
 
 
 def _choices(

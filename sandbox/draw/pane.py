@@ -51,8 +51,9 @@ def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame, mark: Mark) -
     ends = np.array([left, left + SWATCH * scale])
     painter.polyline(ends, np.array([middle, middle]), 3.0 * scale, mark.colour, strip, dash)
     x = left + SWATCH * scale + round(8 * scale)
-    name = type_.shortened(mark.name, BODY, right - x, bold=True)
-    x = painter.text(name, x, middle, bold=True, clip=strip).right + gap
+    size = type_.fitting(mark.name, BODY, right - x, bold=True)
+    name = type_.shortened(mark.name, size, right - x, bold=True)
+    x = painter.text(name, x, middle, size=size, bold=True, clip=strip).right + gap
 
     state = lamp(frame, theme)
     out = words.GRAINS_OUT.format(count=frame.grains_out) if frame.grains_out else ""

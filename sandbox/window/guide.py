@@ -18,6 +18,7 @@ from sandbox.draw.pages.tour_card import (
     TourPage,
     card_layout,
     draw_tour_card,
+    fitting_type,
 )
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import Type
@@ -35,7 +36,6 @@ from scenes.text import message
 WIDTH = 352.0  # of the card where there is no panel, at scale 1 [px]
 MARGIN = 10.0  # round it, at scale 1 [px]
 LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
-SMALLER = (2.5, 2.0, 1.75, 1.5, 1.25, 1.0, 0.875)  # scales of its letters where it would not fit
 
 
 class Guide(Silent):
@@ -381,11 +381,7 @@ class Guide(Silent):
         key = (self.page, column.size, own)
         if self._fitted is None or self._fitted[0] != key:
             width, height = column.width - 2 * self._margin, column.height - 2 * self._margin
-            types = [own, *(Type(scale) for scale in SMALLER if scale < own.scale)]
-            fitting = (
-                t for t in types if card_layout(self.page, t, width).height <= height - least
-            )
-            self._fitted = key, next(fitting, types[-1])
+            self._fitted = key, fitting_type(self.page, own, width, round(height - least))
         return self._fitted[1]
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -9,14 +10,21 @@ import pygame
 import pytest
 
 from sandbox.draw.pages.help_page import draw_help
-from sandbox.draw.pages.tour_card import Field, TourPage, card_layout, draw_tour_card
+from sandbox.draw.pages.tour_card import Field, TourPage, card_layout, draw_tour_card, fitting_type
+from sandbox.draw.painter import Painter
 from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
+from sandbox.draw.theme import theme_named
 from sandbox.draw.views import VIEWS
+from sandbox.draw.widgets.controls import Slider, arranged
+from sandbox.draw.widgets.look import Attention, draw_control
 from sandbox.lessons import classroom, tours
 from sandbox.lessons.lesson import Lesson
+from sandbox.window.guide import MARGIN, WIDTH
 from sandbox.window.menu import Menu
 from sandbox.words import language, words
+from scenes import registry
+from scenes.text import Text
 from tests.draw.frames import hopper_frame, intruder_frame
 
 SIZES = [(1280, 720), (1920, 1080)]
@@ -115,6 +123,80 @@ LESSONS = [
     *(tours.tour(scene) for scene in tours.scenes()),
     *map(classroom.lesson, classroom.names()),
 ]
+
+
+@pytest.mark.parametrize("scene", registry.names())
+@pytest.mark.parametrize("panes", [1, 3])
+def test_the_words_of_a_run_in_a_small_window_with_large_letters(
+    texts: list[tuple[str, pygame.Rect]], panes: int, scene: str
+) -> None:
+    """Title, names of packings and what is said: smaller, but whole."""
+    size, scale = TIGHT
+    renderer = Renderer(size, scale)
+    renderer.arrange(panes=panes, panel=True, timeline=True)
+    said = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=1.4)
+    frame = hopper_frame(title=registry.get(scene).title, scene=scene, notices=(said,))
+    renderer.draw([frame] * panes, notices=[words.SPEED_TOAST_MOST])
+    nothing_cut(texts, size)
+    drawn = re.sub(r"\s", "", "".join(content for content, _ in texts))
+    for whole in (words.title(scene), words.say(said), words.SPEED_TOAST_MOST):
+        assert re.sub(r"\s", "", whole) in drawn
+
+
+@pytest.mark.parametrize(("width", "scale"), [(316, 1.0), (632, 2.0), (736, 3.0)])
+def test_the_panel(texts: list[tuple[str, pygame.Rect]], width: int, scale: float) -> None:
+    """All parameters of all scenes; beside the canvas, and over it in a small window with large letters."""
+    type_ = Type(scale)
+    parameters = {
+        parameter.name: parameter
+        for name in registry.names()
+        for parameter in registry.get(name).parameters
+        if not isinstance(parameter.default, bool)
+    }
+    sliders = [
+        Slider(
+            name,
+            words.parameter_name(name),
+            float(each.default),
+            float(each.low),
+            float(each.high),
+            float(each.default),
+            words.unit(each.unit),
+            whole=isinstance(each.default, int),
+            mark="" if each.live else words.REBUILDS,
+            top=words.TOPS[name] if each.top else "",
+        )
+        for name, each in parameters.items()
+    ]
+    places = arranged(sliders, type_, width)
+    painter = Painter(pygame.Surface((width, places.height), 0, 32), theme_named("dark"), type_)
+    for place in places.all:
+        draw_control(painter, place, Attention())
+    whole = [(content.replace(" … ", " to "), place) for content, place in texts]  # of ranges
+    nothing_cut(whole, (width, places.height))
+    assert {slider.said for slider in sliders} <= {content for content, _ in texts}
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.5, 2.0, 3.0])
+def test_cards_fit_where_there_is_no_panel(
+    texts: list[tuple[str, pygame.Rect]], scale: float
+) -> None:
+    size = TIGHT[0]
+    renderer = Renderer(size, scale)
+    renderer.arrange(timeline=True, card=round((WIDTH + 2.0 * MARGIN) * scale))
+    margin = round(MARGIN * scale)
+    card = renderer.layout.card.inflate(-2 * margin, -2 * margin)
+    for lesson in LESSONS:
+        assert lesson is not None
+        for key, page, written_there in pages_of(lesson):
+            own = fitting_type(page, renderer.type, card.width, card.height)
+            painter = Painter(renderer.surface, renderer.theme, own)
+            texts.clear()
+            draw_tour_card(painter, card, page, focus="", hover="")
+            painter.flush()
+            nothing_cut(texts, size)
+            written = " ".join(content for content, _ in texts).replace("\u00a0", " ")
+            assert all(part in written for part in written_there), (lesson.name, key)
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])

@@ -17,6 +17,8 @@ BUTTON = 38.0  # height of a button at scale 1 [px]
 DOT, DOT_GAP = 4.0, 14.0  # radius of a dot of progress, and from one to the next, at scale 1 [px]
 FIELD_WIDTH = 130.0  # of a number to be typed, at scale 1 [px]
 
+SMALLER = (2.5, 2.0, 1.75, 1.5, 1.25, 1.0, 0.875)  # scales of letters where the card would not fit
+
 NEXT, BACK, CLOSE, FIELD = "tour/next", "tour/back", "tour/close", "tour/number"
 OPTION = "tour/option/"  # and its number, from 0
 
@@ -121,6 +123,29 @@ def card_layout(page: TourPage, type_: Type, width: int) -> CardLayout:
     side = round(32 * scale)
     buttons[CLOSE] = pygame.Rect(width - side - round(6 * scale), round(6 * scale), side, side)
     return CardLayout(buttons, y + tall + pad, tuple(lines))
+
+
+def fitting_type(page: TourPage, own: Type, width: int, height: int) -> Type:
+    """The largest type up to ``own`` in which all of the card fits into so many pixels; the smallest if there is none."""
+    types = [own, *(Type(scale) for scale in SMALLER if scale < own.scale)]
+    return next((each for each in types if _fits(page, each, width, height)), types[-1])
+
+
+def _fits(page: TourPage, type_: Type, width: int, height: int) -> bool:
+    """Is the card no higher than that, and nothing on it cut off?"""
+    places = card_layout(page, type_, width)
+    title = type_.width(page.title, BODY, bold=True)
+    named = [(NEXT, page.onward), *([] if page.first else [(BACK, words.TOUR_BACK)])]
+    left = places.buttons[named[-1][0]].left - 2 * round(PAD * type_.scale)
+    room = {name: places.buttons[name].width - round(8 * type_.scale) for name, _ in named}
+    said = " ".join((page.say, page.ask, *page.options, page.hint, page.do, page.why))
+    return (
+        places.height <= height
+        and type_.width(f"{page.step + 1}/{page.steps}", SMALL) <= left
+        and title <= places.buttons[CLOSE].left - round((PAD + 4.0) * type_.scale)
+        and all(type_.width(text, BODY, bold=True) <= room[name] for name, text in named)
+        and sum("…" in line.text for line in places.lines) <= said.count("…")
+    )
 
 
 def draw_tour_card(
