@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,17 +17,17 @@ from sandbox.session.frame import Frame
 from sandbox.words import words
 
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
-SWATCH = 31.0  # of the packing's curve
-CAPTION_LINES = 2  # at the foot of a canvas, and one more on a narrow one
-NARROW = 330.0  # at scale 1 [px]
-FOOT_SHARE = 0.18  # of a canvas' height, for them, at most
+SWATCH, SWATCH_SHARE = 31.0, 0.25  # of the packing's curve, and of a narrow strip at most
+LINES, MOST_LINES = 2, 5  # at the foot of a canvas
+SENTENCE = 700.0  # length of what is said at most at scale 1 [px]: a narrow canvas has more lines
+FOOT_SHARE = 0.34  # of a canvas' height, for them, at most
 FRESH = 40  # an event is spoken of for so many increments
 
 
 def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
     """A canvas cut into its strip, what is left for the grains, and a foot for words."""
     strip = min(round(STRIP * type_.scale), canvas.height // 3)
-    lines = CAPTION_LINES + (canvas.width < NARROW * type_.scale)
+    lines = min(max(math.ceil(SENTENCE * type_.scale / max(canvas.width, 1)), LINES), MOST_LINES)
     wanted = lines * type_.height(BODY) + 6 * type_.scale
     foot = round(min(wanted, FOOT_SHARE * canvas.height))
     top, bottom = canvas.top + strip, canvas.bottom - foot
@@ -44,13 +45,14 @@ def draw_strip(painter: Painter, strip: pygame.Rect, frame: Frame, mark: Mark) -
     thin = max(round(scale), 1)
     painter.fill(pygame.Rect(strip.left, strip.bottom - thin, strip.width, thin), theme.hairline)
     middle = strip.centery
-    pad, gap = round(12 * scale), round(14 * scale)
+    pad, gap = round(min(12 * scale, 0.05 * strip.width)), round(14 * scale)
     left, right = strip.left + pad, strip.right - pad
+    swatch = min(SWATCH * scale, SWATCH_SHARE * strip.width)
 
     dash = [length * scale for length in mark.dash]
-    ends = np.array([left, left + SWATCH * scale])
+    ends = np.array([left, left + swatch])
     painter.polyline(ends, np.array([middle, middle]), 3.0 * scale, mark.colour, strip, dash)
-    x = left + SWATCH * scale + round(8 * scale)
+    x = left + swatch + min(round(8 * scale), pad)
     size = type_.fitting(mark.name, BODY, right - x, bold=True)
     name = type_.shortened(mark.name, size, right - x, bold=True)
     x = painter.text(name, x, middle, size=size, bold=True, clip=strip).right + gap

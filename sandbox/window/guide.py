@@ -219,7 +219,7 @@ class Guide(Silent):
 
     def handle(self, event: pygame.event.Event) -> bool:
         """Buttons by mouse; Enter, Backspace and Escape while the keyboard is at no other control."""
-        if not self.on:
+        if not self.seen:
             return False
         if self.asking.handle(event):
             return True
@@ -270,14 +270,14 @@ class Guide(Silent):
 
     def stops(self) -> list[str]:
         """Buttons that Tab goes to."""
-        if not self.on:
+        if not self.seen:
             return []
         buttons = [NEXT, CLOSE] if self.index == 0 else [NEXT, BACK, CLOSE]
         return [*self.asking.stops(), *buttons]
 
     def cursor(self) -> int | None:
         """A hand over a button, an arrow over the card."""
-        if not self.on or self.stage.mouse.holding:
+        if not self.seen or self.stage.mouse.holding:
             return None
         if not self.rect.collidepoint(pygame.mouse.get_pos()):
             return None
@@ -347,6 +347,11 @@ class Guide(Silent):
         return " ".join(part for part in (*parts, str(step.why)) if part)
 
     @property
+    def seen(self) -> bool:
+        """Is the card there, and not under a panel that somebody has opened over it?"""
+        return self.on and not self.rect.colliderect(self.stage.over)
+
+    @property
     def taken(self) -> int:
         """How much of the panel's height the card takes, margins included [px]."""
         layout = self.stage.renderer.layout
@@ -398,7 +403,7 @@ class Guide(Silent):
 
     def draw(self, painter: Painter) -> None:
         """The card."""
-        if not self.on:
+        if not self.seen:
             return
         own = painter
         if self._type is not painter.type:

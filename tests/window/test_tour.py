@@ -167,3 +167,15 @@ def test_the_card_hides_nothing_and_stays_in_the_window(touring: Desk, folded: b
         assert guide.rect.height == guide._layout(guide.rect.width).height  # nothing is cut off
         guide.next()
         ready(touring)
+
+
+def test_a_panel_that_is_opened_over_the_card_covers_it(touring: Desk) -> None:
+    app, guide = touring.app, touring.app.guide
+    app.stage.renderer.resize(app.stage.renderer.size, 3.0)
+    seen = []
+    for _ in range(3):
+        app.tick()
+        seen.append((app.panel.drawer.over, guide.seen, bool(guide.stops())))
+        app.panel.drawer.switch()
+    assert seen == [(False, True, True), (True, False, False), (False, True, True)]
+    assert guide.on

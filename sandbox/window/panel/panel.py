@@ -107,6 +107,7 @@ class Panel(Silent):
     def tick(self, now: float) -> bool:
         """Put the controls together anew; follow the keyboard."""
         del now
+        self.stage.over = self.rect if self.drawer.over else pygame.Rect(0, 0, 0, 0)
         if not self.drawer.shown:
             self._arranged, self._places, self.scroll = None, Places((), 0), 0
             return False
