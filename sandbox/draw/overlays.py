@@ -217,8 +217,10 @@ def _draw_force(
         plate, covered = free_place((width, height), wanted, taken, inside)
         if not covered and inside.contains(plate):
             break
-    if not inside.contains(plate):
-        return None
+    if covered or not inside.contains(plate):
+        return (
+            None  # rather no number, which the plot has too, than one that covers what it is about
+        )
     painter.box(
         plate,
         painter.theme.panel,
