@@ -151,6 +151,9 @@ def grain_contacts(packing: Packing) -> GrainContacts:
 
 def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
+    if not len(primitives):
+        none = np.zeros(0, dtype=np.int64)
+        return RigidContacts(none, none, *np.zeros((8, 0)))
     primitives = endless(primitives, packing.box)
     rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
     box = None if packing.box is None else packing.box.kernel_form()

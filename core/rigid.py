@@ -1,11 +1,7 @@
-"""Rigid bodies: walls, pistons, intruders. The only module that knows pymunk.
+"""Rigid bodies: walls, pistons, intruders.
 
-Bodies are moved by a pymunk Space, in which walls are static, a piston is kinematic, and an intruder is a dynamic body that hangs
-on a PivotJoint from a kinematic hand: the hand's pull is limited in speed and force, and walls stop the intruder, not the hand.
-The grains see the same shapes as primitives (``rigid_contacts``) and answer with a reaction on each body.
-
-A Space carries hidden state (cached impulses, contact arbiters), so each increment gets a new one, built from the bodies'
-positions alone. What follows then depends on nothing but those: a replay, an undo and a restored file move as the first run did.
+What slides goes exactly as far as it is told; what a hand drags anywhere is moved by pymunk (``spaces``), among the rest. The
+grains see the same shapes as primitives (``rigid_contacts``) and answer with a reaction on each body.
 """
 
 from __future__ import annotations
@@ -16,7 +12,6 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-import pymunk
 from numpy.typing import NDArray
 
 from core.arrays import Floats
@@ -26,9 +21,6 @@ from core.rigid_contacts import COLUMNS, DISC, EDGE, VERTEX
 Point = tuple[float, float]
 Role = Literal["wall", "piston", "intruder", "body"]
 
-SUBSTEPS = 4
-HELD_MASS = 50.0  # [k · increment²] of a body in a hand, on a joint that gives way at walls: both only settle how it meets them
-JOINT_FORCE = 40.0  # [k R]
 CLEAR = 1.0  # [R] what is further away is not touched in one increment
 SAME_POINT = 1e-9  # [R] what is closer than this is at the same place
 SAME_DIRECTION = 1e-12  # [rad] what turns by less goes straight on: that is rounding
@@ -227,32 +219,15 @@ class RigidWorld:
 
     def _pull(self, body: RigidBody, wanted: Floats, step: float) -> tuple[Point, str | None]:
         """A held body: dynamic, on a PivotJoint from the kinematic hand, among the static rest."""
-        space = pymunk.Space()
-        space.iterations = 30
-        space.collision_slop = 1e-4
-        held = pymunk.Body(HELD_MASS, math.inf)
-        held.position, held.angle = body.position, body.angle
-        held.velocity = (float(wanted[0]), float(wanted[1]))
-        held.velocity_func = lambda b, _gravity, _damping, _dt: _limit_speed(b, step)
-        space.add(held, *_shapes(body, held))
-        for other in (*(b for b in self.bodies if not b.drawn), *near(self.drawn, body)):
-            if other is not body:
-                fixed = pymunk.Body(
-                    body_type=pymunk.Body.KINEMATIC if other.movable else pymunk.Body.STATIC
-                )
-                fixed.position, fixed.angle = other.position, other.angle
-                space.add(fixed, *_shapes(other, fixed))
-        hand = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-        hand.position = body.position
-        hand.velocity = (float(wanted[0]), float(wanted[1]))
-        joint = pymunk.PivotJoint(hand, held, (0.0, 0.0), (0.0, 0.0))
-        joint.max_force = JOINT_FORCE
-        joint.collide_bodies = False
-        space.add(hand, joint)
-        for _ in range(SUBSTEPS):
-            space.step(1.0 / SUBSTEPS)
-        moved = np.array([held.position.x, held.position.y]) - body.position
-        body.position = (held.position.x, held.position.y)
+        from core import spaces  # which no other scene needs
+
+        others = [
+            *(b for b in self.bodies if not b.drawn and b is not body),
+            *near(self.drawn, body),
+        ]
+        reached = spaces.pulled(body, others, (float(wanted[0]), float(wanted[1])), step)
+        moved = np.array(reached) - body.position
+        body.position = reached
         stopped = None
         asked = float(np.hypot(*wanted))
         if asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2:
@@ -282,33 +257,9 @@ def _extent(body: RigidBody) -> tuple[Floats, Floats]:
 
 def depth(body: RigidBody, position: Point, others: Sequence[RigidBody]) -> float:
     """How deep ``body``, put at ``position``, would sink into one of the others [R]; 0 if it touches none."""
-    space = pymunk.Space()
-    for other in others:
-        fixed = pymunk.Body(body_type=pymunk.Body.STATIC)
-        fixed.position, fixed.angle = other.position, other.angle
-        space.add(fixed, *_shapes(other, fixed))
-    there = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    there.position, there.angle = position, body.angle
-    found = [info for shape in _shapes(body, there) for info in space.shape_query(shape)]
-    # Only points where they overlap are given; the sign of how far says which of the two shapes was asked about.
-    return max(
-        (abs(point.distance) for info in found for point in info.contact_point_set.points),
-        default=0.0,
-    )
+    from core import spaces  # which no other scene needs
 
-
-def _limit_speed(body: pymunk.Body, step: float) -> None:
-    """Velocity of a held body: never faster than one step an increment."""
-    velocity = body.velocity
-    if velocity.length > step:
-        body.velocity = velocity * (step / velocity.length)
-
-
-def _shapes(body: RigidBody, holder: pymunk.Body) -> list[pymunk.Shape]:
-    shapes: list[pymunk.Shape] = [pymunk.Circle(holder, r, (x, y)) for x, y, r in body.discs]
-    shapes += [pymunk.Segment(holder, (x0, y0), (x1, y1), r) for x0, y0, x1, y1, r in body.segments]
-    shapes += [pymunk.Poly(holder, list(corners), radius=r) for corners, r in body.polygons]
-    return shapes
+    return spaces.depth(body, position, others)
 
 
 def _straight(pieces: list[tuple[Point, Point, float]]) -> list[tuple[Point, Point, float]]:

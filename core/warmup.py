@@ -29,13 +29,14 @@ def _silent(share: float) -> None:
 def compile_packing(*, periodic: bool, rigid: bool, progress: Tell = _silent) -> None:
     """What packs grains, and looks at what is packed. ``progress`` is told the share done."""
     scene = _Tiny(periodic, rigid)
+    steps: tuple[tuple[float, Callable[[], object]], ...] = (
+        (0.1, scene.place),
+        (0.7, scene.relax),
+        (0.8, lambda: observables.grain_contacts(scene.packing)),
+        (1.0, lambda: observables.body_contacts(scene.packing, scene.primitives)),
+    )
     with compiling(kernel_cache.CORE, packing_part(periodic=periodic, rigid=rigid)):
-        for done, step in (
-            (0.1, scene.place),
-            (0.7, scene.relax),
-            (0.8, lambda: observables.grain_contacts(scene.packing)),
-            (1.0, lambda: observables.body_contacts(scene.packing, scene.primitives)),
-        ):
+        for done, step in steps:
             step()
             progress(done)
     kernel_cache.prune()

@@ -312,9 +312,9 @@ def test_first_frame_tells_its_milestones_in_order() -> None:
     marks = list(run["marks"].values())
     assert list(run["marks"]) == [
         "imported",
-        "drawing kernels",
         "solver kernels",
         "built",
+        "drawing kernels",
         "first frame",
     ]
     assert marks == sorted(marks)

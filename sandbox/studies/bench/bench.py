@@ -15,6 +15,7 @@ from sandbox.studies.bench import kernels as bench_kernels
 from sandbox.studies.bench import peers as bench_peers
 from sandbox.studies.bench import scaling as bench_scaling
 from sandbox.studies.bench import startup as bench_startup
+from sandbox.studies.bench import terms as bench_terms
 from sandbox.studies.bench import threads as bench_threads
 from sandbox.studies.bench.report import Report, Section
 
@@ -41,6 +42,7 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     """The parts, in order of running; each is a function that takes its time."""
     plan = QUICK if quick else FULL
     yield lambda: bench_startup.section(repeats=plan.repeats, cold=plan.cold)
+    yield lambda: bench_terms.section(whole=plan.cold)
     yield lambda: bench_kernels.section(seconds=plan.kernel_seconds)
     yield lambda: bench_peers.section(peers=peers, repeats=plan.repeats, starts=plan.starts)
     yield lambda: bench_scaling.section(quick=quick, seconds=plan.scaling_seconds)

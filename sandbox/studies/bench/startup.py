@@ -14,7 +14,7 @@ from typing import Any
 
 from sandbox.studies.bench.report import Row, Section, at_most
 
-HELP, FIRST_FRAME = 0.3, 3.0  # [s]
+HELP, FIRST_FRAME, COLD_FRAME = 0.3, 1.2, 10.0  # [s]
 SCENES = ("hopper", "intruder")
 REPOSITORY = Path(__file__).parents[3]
 PATIENCE = 600.0
@@ -29,14 +29,16 @@ from sandbox.session.session import Session
 from sandbox.draw import warmup
 from sandbox.draw.render import Renderer
 marks = {"imported": time.perf_counter() - began}
-warmup.compile_kernels()
-marks["drawing kernels"] = time.perf_counter() - began
+drawing = warmup.Warmup()
+drawing.start()
 session = Session(sys.argv[1])
 def progress(text, share):
     if text.startswith("packing"):
         marks.setdefault("solver kernels", time.perf_counter() - began)
 session.build(progress)
 marks["built"] = time.perf_counter() - began
+assert drawing.join(600.0) and drawing.ready
+marks["drawing kernels"] = time.perf_counter() - began
 Renderer((1280, 720)).draw(session.frame())
 marks["first frame"] = time.perf_counter() - began
 print(json.dumps(marks), flush=True)
@@ -115,12 +117,11 @@ def section(*, repeats: int, cold: bool) -> Section:
             run = first_frame(scene, folder)
         data["cold"][scene] = run
         marks = run["marks"]
-        solver = marks["solver kernels"] - marks["drawing kernels"]
-        drawing = marks["drawing kernels"] - marks["imported"]
         rows.append(
             Row(
                 f"first frame of {scene}, cold",
-                f"{run['seconds']:.1f} s, of which compiling: solver {solver:.1f}, drawing {drawing:.1f}",
+                f"{run['seconds']:.1f} s; packed and all kernels compiled after {marks['built']:.1f}",
+                *at_most(run["seconds"], COLD_FRAME, f"{COLD_FRAME:g} s"),
             )
         )
     else:

@@ -1,0 +1,43 @@
+"""What a scene does not need is not there: no compiled kernel, no import, no array."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from sandbox.studies.bench import terms
+
+# scene: the modules whose kernels it must not have, and whether pymunk may be imported
+ABSENT = {
+    "biaxial_periodic": ("friction", "threads", "gravity", "pymunk"),
+    "gravity_hopper": ("threads", "periodic"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ABSENT)
+def test_absent_terms_cost_nothing(scene: str, tmp_path: Path) -> None:
+    found = terms.look(scene, str(tmp_path))
+    assert set(ABSENT[scene]) <= set(terms.absent(found))
+    kernels = {tuple(kernel) for kernel in found["kernels"]}
+    assert (("core.fire", "add_weight") in kernels) == found["gravity"]
+    assert (("core.slip", "prepare_friction") in kernels) == found["friction"]
+    assert (("core.observables", "_measure_rigid") in kernels) == found["rigid"]
+    assert (("core.rigid_contacts", "add_rigid_forces") in kernels) == found["rigid"]
+    # State, velocity, force, inertia and where it was when the lists were made: 5 numbers of 8 bytes each, and more.
+    assert 200.0 < found["bytes_a_grain"] < 4000.0
+    row = terms.row_of(found)
+    assert row.what == scene
+    assert f"{len(found['kernels'])} functions" in row.measured
+
+
+def test_friction_has_arrays_only_where_there_is_friction() -> None:
+    from core.relaxation import Relaxation
+    from tests.core import examples
+
+    relaxation = Relaxation(examples.random_grains(20, 8.0, 1))
+    assert relaxation.friction_terms is None
+    assert relaxation._rigid is None
+    assert relaxation._weight is None
+    assert relaxation._minimizer.state.shape[0] == 5
