@@ -92,7 +92,7 @@ def draw_knobs(
             edge_width=2.0 * painter.scale,
             clip=rect,
         )
-        if index == chosen:
+        if chosen in (index, len(points)):
             painter.ring(
                 x,
                 y,

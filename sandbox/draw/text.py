@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
 from functools import cache, lru_cache
@@ -28,6 +29,7 @@ _FILES = {False: "SandboxSans-Regular.otf", True: "SandboxSans-SemiBold.otf"}
 _CACHE_SIZE = 512
 _FONTS = 64  # sizes that are kept, more than a window has at one scale
 FIRM = "\u00a0"  # a space at which no line breaks
+_LENGTH = re.compile(r"(?<=[0-9]) (?=R\b)")
 BETWEEN = "  ·  "  # texts that share a line
 _WHOLES = 64  # texts in boxes whose sizes are kept
 
@@ -102,6 +104,12 @@ def page_scale(
     """
     fitting = min(size[0] / designed[0], size[1] / designed[1])
     return min(1.3 * scale, max(fitting, SMALL / BODY))
+
+
+def _kept_together(text: str) -> str:
+    """With firm spaces between numbers and their units."""
+    text = text.replace(" k R", f"{FIRM}k{FIRM}R").replace(" %", f"{FIRM}%")
+    return _LENGTH.sub(FIRM, text)
 
 
 class Type:
@@ -212,7 +220,7 @@ class Type:
     def _broken(self, text: str, size: float, width: float, bold: bool) -> list[str]:
         lines: list[str] = []
         line = ""
-        for word in text.replace(" k R", f"{FIRM}k{FIRM}R").replace(" %", f"{FIRM}%").split(" "):
+        for word in _kept_together(text).split(" "):
             longer = f"{line} {word}" if line else word
             if line and self.width(longer, size, bold) > width:
                 lines.append(line)

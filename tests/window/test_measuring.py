@@ -74,6 +74,28 @@ def test_ends_by_keyboard(desk: Desk) -> None:
     assert frame.handles[0].target is None  # the hand was not meant
 
 
+def test_all_of_a_tool_by_mouse_and_by_keyboard(desk: Desk) -> None:
+    measuring = desk.app.measuring
+    measuring.take(CUT)
+    desk.app.tick()
+    (x0, y0), (x1, y1) = measuring.ends
+    camera = desk.app.stage.renderer.camera
+    middle = camera.to_screen(0.6 * x0 + 0.4 * x1, y0)
+    desk.press(middle)
+    desk.point((middle[0] + 30, middle[1] - 20), pressed=True)
+    desk.release((middle[0] + 30, middle[1] - 20))
+    way = 30.0 / camera.scale, 20.0 / camera.scale
+    flat = [place for end in measuring.ends for place in end]
+    assert flat == pytest.approx([x0 + way[0], y0 + way[1], x1 + way[0], y1 + way[1]], abs=0.1)
+    desk.key(pygame.K_RETURN, "\r")  # from all of them to the first
+    assert measuring.chosen == 0
+    for _ in range(2):
+        desk.key(pygame.K_RETURN, "\r")
+    before = list(measuring.ends)
+    desk.key(pygame.K_UP)
+    assert measuring.ends == [(x, y + 0.25) for x, y in before]
+
+
 def test_marks_on_the_plot(desk: Desk) -> None:
     measuring, box = desk.app.measuring, desk.app.stage.renderer.plot_box
     assert box is not None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import pygame
 
@@ -52,7 +53,7 @@ TOOLS = (RULER, PROTRACTOR, CUT, MARKS, SPREADS)
 FIRST = {
     RULER: ((0.35, 0.5), (0.65, 0.5)),
     PROTRACTOR: ((0.65, 0.4), (0.4, 0.4), (0.55, 0.65)),
-    CUT: ((0.1, 0.5), (0.9, 0.5)),
+    CUT: ((0.03, 0.5), (0.97, 0.5)),
 }
 STEP = 0.25  # of an end by keyboard, a press [R]
 MARK_STEP = 1.0 / 40.0  # of a mark by keyboard, of the plot's width
@@ -69,7 +70,8 @@ class Measuring(Silent):
         self.stage, self._brush = stage, brush
         self.on = False
         self.tool = RULER
-        self.chosen = 0  # the end that the keyboard moves
+        self.chosen = 0  # the end that is moved; one more than there are: all of them
+        self._at: Point = (0.0, 0.0)  # where the tool was taken hold of [R]
         self.marks: tuple[float, float] | None = None
         self._ends: dict[str, list[Point]] = {}
         self._dragging = False
@@ -89,6 +91,10 @@ class Measuring(Silent):
             x0, y0, x1, y1 = panes[0][0].bounds
             shares = FIRST[self.tool]
             self._ends[self.tool] = [(x0 + u * (x1 - x0), y0 + v * (y1 - y0)) for u, v in shares]
+            box = panes[0][0].box
+            if self.tool == CUT and box is not None and math.isfinite(box[0]):
+                # Right across the cell, wherever it begins: a longer one would meet contacts twice.
+                self._ends[CUT] = [(x, 0.5 * (y0 + y1)) for x in (0.0, box[0])]
         return self._ends.get(self.tool, [])
 
     def take(self, tool: str) -> None:
@@ -97,6 +103,9 @@ class Measuring(Silent):
             self._brush.take(False)
         self.on = bool(tool)
         self.tool = tool or self.tool
+        panes = self.stage.picture.panes()
+        if tool == CUT and panes and panes[0][0].box is not None:
+            self._ends.pop(CUT, None)  # the cell may have another width by now
         self.chosen, self._dragging = 0, False
         box = self.stage.renderer.plot_box
         if self.tool == MARKS and self.marks is None and box is not None:
@@ -121,7 +130,7 @@ class Measuring(Silent):
             return False
         if not self.on or not self.stage.focus.on_canvas or self.tool == SPREADS:
             return False
-        count = 2 if self.tool == MARKS else len(self.ends)
+        count = 2 if self.tool == MARKS else len(self.ends) + 1
         if action is Action.ENTER and count:
             self.chosen = (self.chosen + 1) % count
             return True
@@ -131,10 +140,15 @@ class Measuring(Silent):
         if self.tool == MARKS:
             self._move_mark(across)
         else:
-            x, y = self.ends[self.chosen]
-            self.ends[self.chosen] = (x + STEP * across, y + STEP * up)
+            self._shift(STEP * across, STEP * up)
         self.stage.redraw(True)
         return True
+
+    def _shift(self, x: float, y: float) -> None:
+        """The chosen end, or all of them, by so much [R]."""
+        for index, end in enumerate(self.ends):
+            if self.chosen in (index, len(self.ends)):
+                self.ends[index] = (end[0] + x, end[1] + y)
 
     def _move_mark(self, across: float) -> None:
         box = self.stage.renderer.plot_box
@@ -183,6 +197,12 @@ class Measuring(Silent):
                 if away and min(away) <= reach:
                     self.chosen = away.index(min(away))
                     return True
+                at = camera.to_world(*pos)
+                if any(
+                    _beside(at, *line) * camera.scale <= 0.5 * reach for line in pairwise(self.ends)
+                ):
+                    self.chosen, self._at = len(self.ends), at
+                    return True
         return False
 
     def _drag(self, pos: tuple[int, int]) -> None:
@@ -195,6 +215,11 @@ class Measuring(Silent):
         pane = self.stage.picture.pane_at(pos)
         if pane is not None:
             frame, camera, _ = self.stage.picture.panes()[pane]
+            if self.chosen == len(self.ends):
+                at = camera.to_world(*pos)
+                self._shift(at[0] - self._at[0], at[1] - self._at[1])
+                self._at = at
+                return
             self.ends[self.chosen] = self._snapped(frame, camera, pos)
 
     def _snapped(self, frame: Frame, camera: Camera, pos: tuple[int, int]) -> Point:
@@ -320,6 +345,15 @@ class Measuring(Silent):
         """Another tool."""
         del value, done
         self.take(name.partition("/")[2])
+
+
+def _beside(at: Point, start: Point, end: Point) -> float:
+    """How far a place is from a line between two others [R]."""
+    x, y = end[0] - start[0], end[1] - start[1]
+    square = x * x + y * y
+    along = ((at[0] - start[0]) * x + (at[1] - start[1]) * y) / square if square > 0.0 else 0.0
+    along = min(max(along, 0.0), 1.0)
+    return math.dist(at, (start[0] + along * x, start[1] + along * y))
 
 
 def _spreads(frame: Frame, colour: int) -> list[Control]:
