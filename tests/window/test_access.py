@@ -406,6 +406,7 @@ def test_another_scene_can_begin_by_request(
     desk.until(lambda: desk.session.scene == "couette")
     for _ in range(5):
         desk.app.tick()
+    assert seen(desk).nodes["cancel"].does  # a way out while it is built
     built.set()
     desk.until(lambda: "canvas" in reader._sent)
 

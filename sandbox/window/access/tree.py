@@ -147,7 +147,8 @@ class Tree:
         for progress in filter(None, map(progress_of, stage.panes.snapshots)):
             self._at_top(label("progress", progress))
         if not frames:
-            return ROOT
+            self._at_top(button("cancel", words.CANCEL, self._act(Action.BACK)))
+            return "cancel"
         if parts.question.asking:
             return self._question()
         if parts.guide.on:
