@@ -10,19 +10,15 @@ twice, once from each side: that costs arithmetic, which is cheap, and saves the
 over a grain's contacts independent of every other grain, hence of the number of threads.
 
 While contacts are summed, rows 2–4 of ``force`` hold A = Σ f/h, B = Σ f cos 2φ/h, D = Σ f sin 2φ/h; ``elasticity.finish`` turns
-them into the forces on (p, q1, q2). Friction adds to B and D (``slip``).
+them into the forces on (p, q1, q2).
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
-
-import numpy as np
 
 from core.jit import kernel
 from core.periodic import COINCIDENT, nearest
-from core.slip import TANGENTIAL_STIFFNESS, TOUCHED, cut, own_way, pair_slip
 
 
 @kernel(noalias=True)
@@ -62,19 +58,10 @@ def slot_forces(
     b,
     d,
     box,
-    begin,
-    first,
-    coefficient,
-    change,
-    marks,
-    pulls,
-    deep,
 ):
     """Add the contacts of n grains in one slot; return their energy.
 
     ``neighbor`` uint32 (n,), ``stiffness`` C_ij (n,). xs … vs and fx … d (n,) are of these grains, x … v (N,) of all.
-    With friction ``begin`` is the place of the first of the grains and ``first`` of their first entry, the rest as in
-    ``FrictionTerms``; without it all these are None, and no code for it exists.
     Where two centres coincide the direction is undefined: the pair then has an energy but no force, and nothing becomes nan.
     """
     energy = 0.0
@@ -91,63 +78,19 @@ def slot_forces(
         r = math.sqrt(r2)
         inverse2 = 1.0 / r2
         inverse = r * inverse2
-        if marks is None:
-            c2 = (dx * dx - dy * dy) * inverse2
-            s2 = 2.0 * dx * dy * inverse2
-            hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
-            hj = math.sqrt(sj + uj * c2 + vj * s2)
-            overlap = hi + hj - r
-            # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
-            overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
-            both = 1.0 / (hi * hj)
-            inverse_hi = hj * both
-            inverse_hj = hi * both
-        else:
-            # Here the chain of operations sets the pace: with h r for h, roots need not wait for a division. λ has one in common.
-            e = np.uint64(first + i)
-            c2 = dx * dx - dy * dy
-            s2 = 2.0 * dx * dy
-            hi = math.sqrt(ss[i] * r2 + ui * c2 + vi * s2)
-            hj = math.sqrt(sj * r2 + uj * c2 + vj * s2)
-            c2 *= inverse2
-            s2 *= inverse2
-            overlap = hi + hj - r2
-            overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
-            reached = overlap + (marks[1, e] + TOUCHED) * r
-            both = hi * hj
-            share = 1.0 / (reached * both)
-            touched = overlap * (both * share)
-            both = reached * share * r
-            inverse_hi = hj * both
-            inverse_hj = hi * both
-            overlap *= inverse
+        c2 = (dx * dx - dy * dy) * inverse2
+        s2 = 2.0 * dx * dy * inverse2
+        hi = math.sqrt(ss[i] + ui * c2 + vi * s2)
+        hj = math.sqrt(sj + uj * c2 + vj * s2)
+        overlap = hi + hj - r
+        # Not max(0, overlap): that is 0 for nan, and nan must go on meaning nan.
+        overlap = 0.0 if overlap <= 0.0 else overlap  # noqa: FURB136
+        both = 1.0 / (hi * hj)
         f = stiffness[i] * overlap
         energy += 0.25 * f * overlap  # each pair is met twice
-        fi = f * inverse_hi
-        fj = f * inverse_hj
+        fi = f * (hj * both)
+        fj = f * (hi * both)
         turn = (fi * (vi * c2 - ui * s2) + fj * (vj * c2 - uj * s2)) * inverse2
-        if marks is not None:
-            # Unsigned, as an index that might be negative would have to be asked each time.
-            k = np.uint64(begin + i)
-            slip = pair_slip(
-                (dx * (dy - marks[3, e]) - dy * (dx - marks[2, e])) * inverse,
-                overlap,
-                touched,
-                marks[0, e],
-                own_way(change[0, k], change[1, k], change[2, k], c2, s2) * inverse_hi,
-                own_way(change[0, j], change[1, j], change[2, j], c2, s2) * inverse_hj,
-                change[3, k],
-                change[3, j],
-            )
-            slip, _ = cut(slip, overlap, coefficient)
-            pull = TANGENTIAL_STIFFNESS * stiffness[i] * slip
-            energy += 0.25 * pull * slip
-            turn -= pull * inverse  # along − t
-            g = pull * inverse_hi
-            b[i] -= g * s2
-            d[i] += g * c2
-            pulls[i] += g
-            deep[i] += 0.5 * pull * overlap
         f *= inverse
         fx[i] -= f * dx + turn * dy
         fy[i] += turn * dx - f * dy
@@ -176,18 +119,9 @@ def slot_force_sum(neighbor, stiffness, x, y, s, u, v, box):
 
 
 @kernel
-def add_contact_forces(
-    begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
-):
-    """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²].
-
-    What friction alone does to shapes and spins goes to ``friction.sums``.
-    """
+def add_contact_forces(begin, end, state, support, force, width, offset, neighbor, stiffness, box):
+    """Add to ``force`` all contacts of the grains from ``begin`` to ``end``; return their energy [k R²]."""
     energy = 0.0
-    coefficient = None if friction is None else friction.coefficient
-    change = None if friction is None else friction.change
-    marks = None if friction is None else friction.marks
-    sums: Any = None if friction is None else friction.sums
     for t in range(width.shape[0]):
         last = min(width[t], end)
         if last <= begin:
@@ -212,13 +146,6 @@ def add_contact_forces(
             force[3, begin:last],
             force[4, begin:last],
             box,
-            begin,
-            first + begin,
-            coefficient,
-            change,
-            marks,
-            None if friction is None else sums[0, begin:last],
-            None if friction is None else sums[1, begin:last],
         )
     return energy
 

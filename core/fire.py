@@ -253,6 +253,7 @@ def mean_contact_force(m, box, rigid):
     neighbor, stiffness = m.lists.neighbor, m.lists.stiffness
     total = 0.0
     contacts = 0.0
+    share = 1.0 if m.lists.half else 0.5  # of an entry in a pair
     for t in range(width.shape[0]):
         n = width[t]
         if n == 0:
@@ -268,8 +269,8 @@ def mean_contact_force(m, box, rigid):
             support[2],
             box,
         )
-        total += 0.5 * force  # each pair is met twice
-        contacts += 0.5 * number
+        total += share * force
+        contacts += share * number
     if rigid is not None:
         primitives, grain, primitive = rigid.primitives, rigid.grain, rigid.primitive
         contact_stiffness = m.grains.contact_stiffness

@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, aligned_zeros
 from core.fire import Minimizer
 from core.marks import lay_out, measure, slips
+from core.neighbors import SLOT_PADDING
 from core.observables import GrainContacts, RigidContacts
 from core.packing import MAX_LABEL, PeriodicBox
 from core.rigid_contacts import EDGE, VERTEX, RigidTerms
@@ -131,6 +132,8 @@ class FrictionalContacts:
             change=np.zeros((4, count)),
             sums=np.zeros((2, count)),
             marks=np.zeros((4, 0)),
+            reactions=aligned_zeros(8, 0),
+            received=aligned_zeros(count, 8),
             body_marks=np.zeros((4, 0)),
             turn=origin.turn,
         )
@@ -146,7 +149,7 @@ class FrictionalContacts:
     def relist(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
         """Take every pair of new lists as a candidate, with its slip counted from the origin, or from here if that is past."""
         lists = m.lists
-        pairs = int(lists.width.sum()) // 2
+        pairs = int(lists.width.sum())
         at_i, at_j = lists.place[lists.first[:pairs]], lists.place[lists.second[:pairs]]
         grain = primitive = np.zeros(0, dtype=np.int64)
         if rigid is not None:
@@ -171,11 +174,13 @@ class FrictionalContacts:
         gap = np.maximum(place[0], 0.0)
         self._round_corners(grain, primitive, slip[pairs:], gap[pairs:], known[pairs:])
         self._marks = np.array([slip, gap, place[1], place[2]])
-        slots = np.zeros((4, len(lists.neighbor)))
+        entries = int((-(-lists.width // SLOT_PADDING) * SLOT_PADDING).sum())
+        slots = np.zeros((4, entries))
         lay_out(lists, self._at_i, self._at_j, self._marks, lists.filled, slots)
         self.terms = self.terms._replace(
             origin=start[2:].copy(),
             marks=slots,
+            reactions=aligned_zeros(8, entries),
             body_marks=np.ascontiguousarray(self._marks[:, pairs:]),
             turn=self._turn,
         )

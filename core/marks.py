@@ -146,17 +146,13 @@ def slips(at_i, at_j, primitive, marks, state, friction, primitives, box, place,
 
 @kernel
 def lay_out(lists, at_i, at_j, marks, filled, slots):
-    """Put the marks (4, P) of each pair of grains where its two entries stand in the slots (4, E), seen from either side."""
+    """Put the marks (4, P) of each pair of grains where its entry stands in the slots (4, E)."""
     offset = lists.offset
     for i in range(filled.shape[0]):
         filled[i] = 0
     for k in range(at_j.shape[0]):
-        for turned in range(2):
-            i = at_j[k] if turned else at_i[k]
-            side = -1.0 if turned else 1.0
-            at = offset[filled[i]] + i
-            filled[i] += 1
-            slots[0, at] = marks[0, k]
-            slots[1, at] = marks[1, k]
-            slots[2, at] = side * marks[2, k]
-            slots[3, at] = side * marks[3, k]
+        i = at_i[k]
+        at = offset[filled[i]] + i
+        filled[i] += 1
+        for row in range(4):
+            slots[row, at] = marks[row, k]

@@ -1,8 +1,9 @@
 """Neighbour lists with a skin, rebuilt into preallocated arrays.
 
-A rebuild sorts the grains into cells, finds all pairs closer than their extents plus the skin, and lays the full list out in
-slots (see ``contacts``). That layout wants grains in descending order of their number of neighbours, so a rebuild also says
-in which order the grains must stand; ``relax`` keeps its arrays in that order, and ``Packing`` never knows.
+A rebuild sorts the grains into cells, finds all pairs closer than their extents plus the skin, and lays them out in slots (see
+``contacts``): each with both of its grains, or with one, which is half a list. That layout wants grains in descending order of
+their number of neighbours, so a rebuild also says in which order the grains must stand; ``relax`` keeps its arrays in that order,
+and ``Packing`` never knows.
 
 A list stays valid until some grain has moved, or grown, by half the skin in all.
 """
@@ -25,7 +26,8 @@ FIT, PAIRS_FULL, SLOTS_FULL, RIGID_FULL = 0, 1, 2, 3  # what a rebuild answers
 class Lists(NamedTuple):
     """Preallocated arrays of the neighbour search for N grains and at most P pairs in at most K slots."""
 
-    width: NDArray[np.int64]  # (K,) grains that have more than t neighbours
+    half: bool  # is each pair listed with one of its grains only?
+    width: NDArray[np.int64]  # (K,) grains that have more than t neighbours listed
     offset: NDArray[np.int64]  # (K,) where slot t begins in ``neighbor``
     neighbor: NDArray[np.uint32]  # (2 P + padding,)
     stiffness: NDArray[np.float64]  # (2 P + padding,) C_ij [k]
@@ -34,7 +36,7 @@ class Lists(NamedTuple):
     cell_start: NDArray[np.int64]  # (cells + 1,)
     cell_of: NDArray[np.int64]  # (N,)
     sorted: NDArray[np.float64]  # (3, N) x, y, half a reach, in cell_order
-    degree: NDArray[np.int64]  # (N,) neighbours of each grain
+    degree: NDArray[np.int64]  # (N,) neighbours of each grain that are listed
     place: NDArray[np.int64]  # (N,) inverse of ``order``
     first: NDArray[np.int64]  # (P,) one grain of each pair
     second: NDArray[np.int64]  # (P,) the other
@@ -42,16 +44,17 @@ class Lists(NamedTuple):
     start: NDArray[np.int64]  # (K + 2,)
 
 
-def allocate(grains: int, pairs: int, slots: int = 0) -> Lists:
+def allocate(grains: int, pairs: int, slots: int = 0, *, half: bool = False) -> Lists:
     """Arrays for ``grains`` grains with at most ``pairs`` pairs in all and ``slots`` neighbours for any one grain.
 
     Without slots they are enough for ``find_pairs``, and no more.
     """
     pairs = max(8, pairs)
     laid_out = grains if slots else 0
-    entries = 2 * pairs + SLOT_PADDING * slots if slots else 0
+    entries = (1 if half else 2) * pairs + SLOT_PADDING * slots if slots else 0
     integers = lambda n: np.zeros(n, dtype=np.int64)  # noqa: E731
     return Lists(
+        half=half,
         width=integers(slots),
         offset=integers(slots),
         neighbor=np.zeros(entries, dtype=np.uint32),
@@ -256,12 +259,12 @@ def lay_out(pairs, contact_stiffness, lists):
     width, offsets, neighbor, stiffness = lists.width, lists.offset, lists.neighbor, lists.stiffness
     degree, place, order, filled = lists.degree, lists.place, lists.order, lists.filled
     first, second, cell_order = lists.first, lists.second, lists.cell_order
-    slots = width.shape[0]
+    slots, half = width.shape[0], lists.half
     for i in range(grains):
         degree[i] = 0
     for k in range(pairs):
         degree[first[k]] += 1
-        degree[second[k]] += 1
+        degree[second[k]] += 0 if half else 1
     start = lists.start
     for t in range(slots + 2):
         start[t] = 0
@@ -297,6 +300,8 @@ def lay_out(pairs, contact_stiffness, lists):
         neighbor[at] = place[j]
         stiffness[at] = contact
         filled[i] += 1
+        if half:
+            continue
         at = offsets[filled[j]] + place[j]
         neighbor[at] = place[i]
         stiffness[at] = contact

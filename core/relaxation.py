@@ -234,7 +234,7 @@ class Relaxation:
             else:
                 slots *= 2
             self._minimizer = self._minimizer._replace(
-                lists=neighbors.allocate(grains, pairs, slots)
+                lists=neighbors.allocate(grains, pairs, slots, half=lists.half)
             )
 
 
@@ -289,7 +289,7 @@ def _minimizer(packing: Packing, spins: bool, control: NDArray[np.void]) -> fire
             area_stiffness=area_modulus(nu, stiffness) / rest_area,
             shape_stiffness=shape_stiffness,
         ),
-        lists=neighbors.allocate(count, 4 * count, 24),
+        lists=neighbors.allocate(count, 4 * count, 24, half=spins),
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),

@@ -19,7 +19,7 @@ left hangs on two sums of its own, P = Σ pull/h and Q = Σ pull Δ/2.
 Nothing is frozen: cap, tangent, levers and the set of contacts are functions of the state. That makes a force field, and not the
 gradient of a potential; the energy that is returned is what the tangential springs store.
 
-All is summed in the same pass as the normal forces (``contacts.slot_forces``, ``rigid_contacts.add_rigid_forces``).
+All is summed together with the normal forces (``frictional_pairs``, ``rigid_contacts.add_rigid_forces``).
 """
 
 from __future__ import annotations
@@ -46,6 +46,10 @@ class FrictionTerms(NamedTuple):
     change: Floats  # (4, N) w0, wc, ws [R²] and δφ [rad] as things stand
     sums: Floats  # (2, N) P [k] and Q [k R²]
     marks: Floats  # (4, E)
+    reactions: (
+        Floats  # (8, E) what each entry does to its neighbour: fx, fy, A, B, D, P, Q and nothing
+    )
+    received: Floats  # (N, 8) their sums
     body_marks: Floats  # (4, B)
     turn: Floats  # (M,) how far the body of each primitive has turned since the origin [rad]
 
@@ -89,6 +93,9 @@ def prepare_friction(begin, end, state, friction):
         sums[0, begin:end],
         sums[1, begin:end],
     )
+    received = friction.received[begin:end].reshape(-1)
+    for k in range(received.shape[0]):
+        received[k] = 0.0
 
 
 @kernel(noalias=True)

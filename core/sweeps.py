@@ -12,6 +12,7 @@ import numpy as np
 
 from core.contacts import add_contact_forces
 from core.elasticity import add_guard, finish
+from core.frictional_pairs import add_pairs, react, receive
 from core.jit import kernel
 from core.slip import finish_friction
 
@@ -112,12 +113,22 @@ def chunk_forces(
     box,
     friction,
 ):
-    """Contacts and elasticity of the grains from ``begin`` to ``end`` into ``force``; returns their energy [k R²]."""
-    energy = add_contact_forces(
-        begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
-    )
+    """Contacts and elasticity of the grains from ``begin`` to ``end`` into ``force``; returns their energy [k R²].
+
+    With friction the pairs have been gone through before, and their energy counted.
+    """
+    energy = 0.0
     p, q1, q2 = state[2, begin:end], state[3, begin:end], state[4, begin:end]
     fp, fq1, fq2 = force[2, begin:end], force[3, begin:end], force[4, begin:end]
+    if friction is None:
+        energy = add_contact_forces(
+            begin, end, state, support, force, width, offset, neighbor, stiffness, box
+        )
+    else:
+        sums = friction.sums
+        pulls, deep = sums[0, begin:end], sums[1, begin:end]
+        fx, fy = force[0, begin:end], force[1, begin:end]
+        receive(friction.received[begin:end], fx, fy, fp, fq1, fq2, pulls, deep)
     area = rest_area[begin:end]
     own, small = finish(
         p, q1, q2, area, area_stiffness[begin:end], shape_stiffness[begin:end], fp, fq1, fq2
@@ -125,17 +136,7 @@ def chunk_forces(
     if small > 0.0:
         own += add_guard(p, q1, q2, area, fp, fq1, fq2)
     if friction is not None:
-        sums = friction.sums
-        finish_friction(
-            p,
-            q1,
-            q2,
-            sums[0, begin:end],
-            sums[1, begin:end],
-            fq1,
-            fq2,
-            force[5, begin:end],
-        )
+        finish_friction(p, q1, q2, pulls, deep, fq1, fq2, force[5, begin:end])
     return energy + own
 
 
@@ -154,8 +155,16 @@ def all_forces(
     box,
     friction,
 ):
-    """``chunk_forces`` of all grains."""
+    """``chunk_forces`` of all grains, with friction after their pairs."""
     energy = 0.0
+    if friction is not None:
+        for begin in range(0, state.shape[1], CHUNK):
+            end = min(begin + CHUNK, state.shape[1])
+            pairs = add_pairs(
+                begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
+            )
+            energy = add(energy, pairs)
+        react(neighbor, friction)
     for begin in range(0, state.shape[1], CHUNK):
         energy = add(
             energy,

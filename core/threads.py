@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from core.contacts import prepare
 from core.errors import InputError
+from core.frictional_pairs import add_pairs, react
 from core.jit import kernel
 from core.slip import prepare_friction
 from core.sweeps import CHUNK, add, chunk_forces, drift, kick, largest, second_kick
@@ -121,6 +122,17 @@ def all_forces(
     """As ``sweeps.all_forces``."""
     count = state.shape[1]
     chunks = (count + CHUNK - 1) // CHUNK
+    energy = 0.0
+    if friction is not None:
+        for c in prange(chunks):
+            begin = c * CHUNK
+            end = min(begin + CHUNK, count)
+            sums[c, 0] = add_pairs(
+                begin, end, state, support, force, width, offset, neighbor, stiffness, box, friction
+            )
+        for c in range(chunks):
+            energy = add(energy, sums[c, 0])
+        react(neighbor, friction)
     for c in prange(chunks):
         sums[c, 0] = chunk_forces(
             c * CHUNK,
@@ -138,7 +150,6 @@ def all_forces(
             box,
             friction,
         )
-    energy = 0.0
     for c in range(chunks):
         energy = add(energy, sums[c, 0])
     return energy

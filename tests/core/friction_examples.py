@@ -115,9 +115,11 @@ def case(
     box: PeriodicBox | None = None,
     bodies: bool = True,
     move: float = 0.02,
+    count: int = 20,
+    side: float = 9.0,
 ) -> Case:
     """Grains and bodies anywhere that have gone up to ``size`` and ``move`` since every contact remembered something."""
-    packing = examples.random_grains(20, 9.0, seed, box)
+    packing = examples.random_grains(count, side, seed, box)
     world = examples.bodies() if bodies else RigidWorld()
     if box is not None and bodies:
         world.remove("floor")  # it is too long for a cell

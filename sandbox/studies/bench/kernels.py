@@ -84,7 +84,6 @@ def repeat_pairs(times, m, box):
             lists.neighbor,
             lists.stiffness,
             box,
-            None,
         )
     return energy
 
