@@ -12,6 +12,7 @@ import heapq
 import numpy as np
 from numpy.typing import NDArray
 
+from core.arrays import Floats
 from core.observables import GrainContacts, RigidContacts
 from core.packing import Packing
 
@@ -41,26 +42,28 @@ def arch(
         return np.zeros(0, dtype=np.int64)
     weak = WEAK * float(forces.mean())
     x, y = packing.x, packing.y
+    carrying = pairs.normal_force > weak
+    i, j = pairs.i[carrying], pairs.j[carrying]
+    costs = _costs(x[i], y[i], x[j], y[j], base)
     links: dict[int, list[tuple[int, float]]] = {}
-    for k in np.flatnonzero(pairs.normal_force > weak):
-        i, j = int(pairs.i[k]), int(pairs.j[k])
-        cost = _cost(x[i], y[i], x[j], y[j], base)
-        links.setdefault(i, []).append((j, cost))
-        links.setdefault(j, []).append((i, cost))
+    for first, second, cost in zip(i.tolist(), j.tolist(), costs.tolist(), strict=True):
+        links.setdefault(first, []).append((second, cost))
+        links.setdefault(second, []).append((first, cost))
+    resting = (side != 0) & (bodies.normal_force > weak)
+    i = bodies.grain[resting]
+    costs = _costs(x[i], y[i], bodies.x[resting], bodies.y[resting], base)
     start: dict[int, float] = {}
     end: dict[int, float] = {}
-    for k in np.flatnonzero((side != 0) & (bodies.normal_force > weak)):
-        i = int(bodies.grain[k])
-        cost = _cost(x[i], y[i], bodies.x[k], bodies.y[k], base)
-        ends = start if side[k] < 0 else end
-        ends[i] = min(cost, ends.get(i, np.inf))
+    for grain, at, cost in zip(i.tolist(), side[resting].tolist(), costs.tolist(), strict=True):
+        ends = start if at < 0 else end
+        ends[grain] = min(cost, ends.get(grain, np.inf))
     return np.array(_cheapest_chain(links, start, end), dtype=np.int64)
 
 
-def _cost(x0: float, y0: float, x1: float, y1: float, base: float) -> float:
-    """Area between a link and the base [R²], and a little for its length."""
-    height = max(0.5 * (y0 + y1) - base, 0.0)
-    return abs(x1 - x0) * height + LENGTH_COST * float(np.hypot(x1 - x0, y1 - y0))
+def _costs(x0: Floats, y0: Floats, x1: Floats, y1: Floats, base: float) -> Floats:
+    """Areas between links (L,) and the base [R²], and a little for their lengths."""
+    height = np.maximum(0.5 * (y0 + y1) - base, 0.0)
+    return np.abs(x1 - x0) * height + LENGTH_COST * np.hypot(x1 - x0, y1 - y0)
 
 
 def _cheapest_chain(

@@ -272,15 +272,16 @@ def _corners(primitives: Floats) -> Indices:
 
     Others may end in the same place: an edge and its vertex have radius and direction in common.
     """
-    edges = np.flatnonzero(primitives[:, 0] == EDGE)
-    rows = primitives[edges]
+    found = np.full((len(primitives), 2), -1)
+    edges, vertices = (np.flatnonzero(primitives[:, 0] == kind) for kind in (EDGE, VERTEX))
+    if not len(edges):
+        return found
+    rows, corners = primitives[edges], primitives[vertices, None]
     starts = np.column_stack([rows[:, 1:3], -rows[:, 3:5], rows[:, 7]])
     ends = np.column_stack([rows[:, 5:7], rows[:, 3:5], rows[:, 7]])
-    found = np.full((len(primitives), 2), -1)
-    for v in np.flatnonzero(primitives[:, 0] == VERTEX):
-        for side, first in enumerate((3, 5)):
-            row = primitives[v]
-            end = np.concatenate([row[1:3], row[first : first + 2], row[7:]])
-            near = np.minimum(np.abs(starts - end).max(axis=1), np.abs(ends - end).max(axis=1))
-            found[v, side] = next(iter(edges[near < _SAME_POINT]), -1)
+    for side, first in enumerate((3, 5)):
+        corner = corners[..., [1, 2, first, first + 1, 7]]
+        away = [np.abs(points - corner).max(axis=2) for points in (starts, ends)]
+        meets = np.minimum(*away) < _SAME_POINT
+        found[vertices, side] = np.where(meets.any(axis=1), edges[meets.argmax(axis=1)], -1)
     return found
