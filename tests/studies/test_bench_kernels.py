@@ -89,8 +89,13 @@ def test_repeating_changes_nothing() -> None:
 
 
 def test_section_names_what_is_compared() -> None:
-    section = bench_kernels.section(seconds=0.05, grains=60)
+    section = bench_kernels.section(seconds=0.05, grains=60, scenes={"gravity_hopper": 100})
     assert section.name == "kernels"
+    (friction,) = section.data["friction"]
+    assert friction["scene"] == "gravity_hopper"
+    assert friction["pairs"] > 60
+    assert friction["body_pairs"] > 10
+    assert len([row for row in section.rows if "friction" in row.what]) == 3
     for case in section.data["pairs"].values():
         assert case["disagreement"] < 1e-12
         assert case["pairs"] > 60

@@ -1,8 +1,8 @@
-"""Pair forces against the plain kernel, and what one iteration is made of: neighbours, forces, FIRE."""
+"""Pair forces against the plain kernel, what friction and bodies add, and what an iteration is made of."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core import contacts, elasticity, fire, sweeps
+from core import contacts, elasticity, fire, rigid_contacts, sweeps
 from core.arrays import Floats
+from core.friction import Friction
 from core.generate import Recipe, pack
 from core.jit import kernel
 from core.relaxation import Relaxation
+from sandbox.session.commands import Protocol
+from sandbox.session.session import Session
 from sandbox.studies.bench import scalar_kernel
 from sandbox.studies.bench.report import Row, Section, at_most
 from sandbox.studies.bench.times import Times, in_turn
@@ -22,6 +25,13 @@ from sandbox.studies.bench.times import Times, in_turn
 GRAINS, PACKING_FRACTION = 1000, 0.9
 CASES = {"without a box": False, "periodic box": True}
 RATIO = 0.45  # production over plain, time per listed pair
+FRICTION = 0.5  # coefficient
+FRICTION_SIZES = {"hopper": 300, "gravity_hopper": 200}
+FRICTION_RATIO = 1.2  # an evaluation of the forces with friction over one without
+BODY_RATIO = (
+    1.3  # a pair of a grain and a body over one of two grains, with what each grain costs besides
+)
+SETTLE = 10  # increments before friction is measured
 BEST_KNOWN = 7.7  # [ns] a pair, the fastest layout in pure Numba found before this program …
 BEST_KNOWN_PLAIN = 20.7  # [ns] … where a plain kernel took this
 
@@ -89,11 +99,22 @@ def repeat_pairs(times, m, box):
 
 
 @kernel
-def repeat_forces(times, m, box):
-    """All forces of a packing without bodies, several times, for the clock."""
+def repeat_forces(times, m, box, rigid, friction, weight):
+    """All forces of a packing, several times, for the clock."""
     energy = 0.0
     for _ in range(times):
-        energy = fire.evaluate(m, box, None, None, None, None)
+        energy = fire.evaluate(m, box, rigid, friction, weight, None)
+    return energy
+
+
+@kernel
+def repeat_bodies(times, m, box, rigid, friction):
+    """Those of bodies on grains alone. The forces grow; nobody looks at them."""
+    energy = 0.0
+    for _ in range(times):
+        energy += rigid_contacts.add_rigid_forces(
+            m.state, m.support, m.grains.contact_stiffness, m.force, rigid, box, friction
+        )
     return energy
 
 
@@ -192,7 +213,7 @@ def measure_iteration(grains: int, seconds: float) -> dict[str, Any]:
 
     jobs: dict[str, Callable[[int], object]] = {
         "rebuild": rebuild,
-        "forces": lambda n: repeat_forces(n, m, box),
+        "forces": lambda n: repeat_forces(n, m, box, None, None, None),
         "update": lambda n: repeat_updates(n, m),
         "iteration": lambda n: whole.run(n),
     }
@@ -200,10 +221,81 @@ def measure_iteration(grains: int, seconds: float) -> dict[str, Any]:
     return {"grains": grains, **{f"{name}_us": t.data(1e-6) for name, t in times.items()}}
 
 
-def section(*, seconds: float, grains: int = GRAINS) -> Section:
-    """The part of the bench about kernels."""
-    cases = measure_pairs(grains, 0.8 * seconds)
+def rubbing(scene: str, grains: int) -> tuple[Relaxation, Relaxation]:
+    """A scene's grains after some increments, near new lists, with friction and without."""
+    session = Session(scene, "mixed", 1, {"grains": grains})
+    session.build()
+    session.submit(Protocol(True))
+    done = 0
+    while done < SETTLE and not (done and session.idle):
+        done += session.advance(1000)
+    engine = session.run.engine
+    primitives, owner = engine.world.primitives()
+    still = engine.world.placement()
+    friction = Friction(FRICTION, len(engine.packing))
+    origin = friction.begin(engine.packing, primitives, owner, still, still)
+    both = [
+        Relaxation(engine.packing, primitives, one, engine.system.gravity, tolerance=1e-14)
+        for one in (origin, None)
+    ]
+    for relaxation in both:
+        relaxation.run(1)
+    return both[0], both[1]
+
+
+def measure_friction(sizes: Mapping[str, int], seconds: float) -> list[dict[str, Any]]:
+    """What friction adds to an evaluation of the forces, and what a pair with a body costs."""
+    found = []
+    for scene, grains in sizes.items():
+        jobs: dict[str, Callable[[int], object]] = {}
+        for name, relaxation in zip(("with", "without"), rubbing(scene, grains), strict=True):
+            m, box, rigid = relaxation._minimizer, relaxation._box, relaxation._rigid
+            terms = relaxation.friction_terms
+            forces = partial(repeat_forces, m=m, box=box, friction=terms, weight=relaxation._weight)
+            jobs[f"forces {name}"] = partial(forces, rigid=rigid)
+            jobs[f"grains {name}"] = partial(forces, rigid=None)
+            jobs[f"bodies {name}"] = partial(
+                repeat_bodies, m=m, box=box, rigid=rigid, friction=terms
+            )
+        times = in_turn(jobs, seconds=seconds / len(sizes))
+        assert rigid is not None
+        one: dict[str, Any] = {"scene": scene, "grains": m.state.shape[1]}
+        one["pairs"], one["body_pairs"] = int(m.lists.width.sum()) // 2, int(rigid.used[0])
+        one |= {f"{name.replace(' ', '_')}_us": t.data(1e-6) for name, t in times.items()}
+        found.append(one)
+    return found
+
+
+def rows_of_friction(one: dict[str, Any]) -> list[Row]:
+    """What is shown of one scene."""
+    rubbed, smooth = _least(one, "forces_with_us"), _least(one, "forces_without_us")
+    rows = [
+        Row(
+            f"forces with friction / without, {one['scene']}, N = {one['grains']}",
+            f"{rubbed:.1f} / {smooth:.1f} µs = {rubbed / smooth:.2f}",
+            *at_most(rubbed / smooth, FRICTION_RATIO, f"{FRICTION_RATIO}"),
+        )
+    ]
+    for name in ("with", "without"):
+        body = 1e3 * _least(one, f"bodies_{name}_us") / one["body_pairs"]
+        pair = 1e3 * _least(one, f"grains_{name}_us") / one["pairs"]
+        rows.append(
+            Row(
+                f"a grain and a body / all of two grains, {name} friction, {one['scene']}",
+                f"{body:.1f} / {pair:.1f} ns a listed pair = {body / pair:.2f}",
+                *at_most(body / pair, BODY_RATIO, f"{BODY_RATIO}"),
+            )
+        )
+    return rows
+
+
+def section(
+    *, seconds: float, grains: int = GRAINS, scenes: Mapping[str, int] = FRICTION_SIZES
+) -> Section:
+    """The part of the bench about kernels; ``scenes``: those that friction is looked at in, with their grains."""
+    cases = measure_pairs(grains, 0.6 * seconds)
     iteration = measure_iteration(grains, 0.2 * seconds)
+    friction = measure_friction(scenes, 0.2 * seconds)
     rows = []
     for name, case in cases.items():
         plain, fast, ratio = _least(case, "plain_ns"), _least(case, "production_ns"), case["ratio"]
@@ -233,9 +325,9 @@ def section(*, seconds: float, grains: int = GRAINS) -> Section:
             f"{_least(iteration, 'rebuild_us'):.0f} µs",
         ),
     ]
-    return Section(
-        "kernels", "Kernels, one core", tuple(rows), {"pairs": cases, "iteration": iteration}
-    )
+    rows += [row for one in friction for row in rows_of_friction(one)]
+    data = {"pairs": cases, "iteration": iteration, "friction": friction}
+    return Section("kernels", "Kernels, one core", tuple(rows), data)
 
 
 def _least(data: dict[str, Any], name: str) -> float:
