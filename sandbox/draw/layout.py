@@ -28,6 +28,7 @@ LINE = 21.0  # height of a line of words at scale 1 [px]
 LINES_PAD = 8.0  # and of what is around all of them
 LINES, MOST_LINES = 2, 4  # under one canvas
 SENTENCES = 1700.0  # length of what is said at most at scale 1 [px]: a narrow canvas has more lines
+SMALLEST = 0.875  # scale of letters that can be read
 LEAST_WORDS = 38.0  # height of their place at scale 1 [px]: what is pressed there can be hit
 WORDS_SHARE = 0.25  # of what they take from the canvases, at most
 
@@ -101,6 +102,7 @@ def layout(
 
 def _words(width: int, scale: float, panes: int, window: bool) -> float:
     """Height for words under the canvases [px]. Each of several has a foot of its own: the window's own words are left."""
+    scale = max(scale, SMALLEST)
     lines = min(max(math.ceil(SENTENCES * scale / max(width, 1)), LINES), MOST_LINES)
     if panes > 1:
         lines = 1 if window else 0

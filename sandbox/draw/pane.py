@@ -19,16 +19,19 @@ from sandbox.words import words
 STRIP = 32.0  # height of the strip above a canvas at scale 1 [px]
 SWATCH, SWATCH_SHARE = 31.0, 0.25  # of the packing's curve, and of a narrow strip at most
 LINES, MOST_LINES = 2, 5  # at the foot of a canvas
-SENTENCE = 700.0  # length of what is said at most at scale 1 [px]: a narrow canvas has more lines
+SENTENCE = 900.0  # length of what is said at most at scale 1 [px]: a narrow canvas has more lines
 FOOT_SHARE = 0.34  # of a canvas' height, for them, at most
 FRESH = 40  # an event is spoken of for so many increments
 
 
-def cut(canvas: pygame.Rect, type_: Type) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
-    """A canvas cut into its strip, what is left for the grains, and a foot for words."""
+def cut(
+    canvas: pygame.Rect, type_: Type, narrowest: int
+) -> tuple[pygame.Rect, pygame.Rect, pygame.Rect]:
+    """A canvas cut into its strip, what is left for the grains, and a foot for words: as high as the narrowest needs it [px]."""
     strip = min(round(STRIP * type_.scale), canvas.height // 3)
-    lines = min(max(math.ceil(SENTENCE * type_.scale / max(canvas.width, 1)), LINES), MOST_LINES)
-    wanted = lines * type_.height(BODY) + 6 * type_.scale
+    letters = type_.pixels(BODY) / BODY
+    lines = min(max(math.ceil(SENTENCE * letters / max(narrowest, 1)), LINES), MOST_LINES)
+    wanted = lines * type_.leading(BODY) + 6 * type_.scale
     foot = round(min(wanted, FOOT_SHARE * canvas.height))
     top, bottom = canvas.top + strip, canvas.bottom - foot
     return (

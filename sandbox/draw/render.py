@@ -212,7 +212,7 @@ class Renderer:
         painter.fill(canvases[0].unionall(canvases[1:]), self.theme.hairline)  # shows in the seams
         bodies, feet, waiting = [], [], iter(told_apart)
         for canvas, frame in zip(canvases, panes, strict=True):
-            strip, body, foot = cut(canvas, self.type)
+            strip, body, foot = cut(canvas, self.type, canvases[0].width)
             painter.fill(canvas, self.theme.ground)
             if frame is not None:
                 draw_strip(painter, strip, frame, next(waiting))

@@ -143,7 +143,9 @@ def test_the_words_of_a_run_in_a_small_window_with_large_letters(
         assert re.sub(r"\s", "", whole) in drawn
 
 
-@pytest.mark.parametrize(("size", "scale"), [(TIGHT[0], 1.0), (TIGHT[0], 2.0), (SIZES[0], 1.0)])
+@pytest.mark.parametrize(
+    ("size", "scale"), [(TIGHT[0], 1.0), (TIGHT[0], 2.0), (SIZES[0], 1.0), ((720, 404), 0.5625)]
+)
 def test_long_words_at_the_foot_of_narrow_canvases(
     texts: list[tuple[str, pygame.Rect]], size: tuple[int, int], scale: float
 ) -> None:
@@ -153,7 +155,8 @@ def test_long_words_at_the_foot_of_narrow_canvases(
         "{clogged}, held by an arch of {grains} {grains:grain|grains}", clogged=clogged, grains=7
     )
     renderer = Renderer(size, scale)
-    renderer.arrange(panes=3, panel=True, timeline=True)
+    window = scale >= 1.0  # else a film
+    renderer.arrange(panes=3, panel=window, timeline=window)
     renderer.draw([hopper_frame(notices=(said,))] * 3)
     for canvas, body in zip(renderer.layout.canvases, renderer.bodies, strict=True):
         foot = pygame.Rect(canvas.left, body.bottom, canvas.width, canvas.bottom - body.bottom)
