@@ -60,7 +60,12 @@ def draw_header(
     fitting = [k for k, width in enumerate(widths[:-1]) if title + width <= room]
     # Where nothing fits beside the title, that is written smaller, beside what says enough.
     least = type_.width(name, SMALL / scale, bold=True)
-    fitting += [k for k in range(enough, len(widths)) if least + widths[k] <= room]
+    telling = range(enough, max(len(widths) - 1, enough + 1))
+    fitting += [k for k in telling if least + widths[k] <= room]
+    if (
+        look.values is not None or look.view.only_chains
+    ):  # a scale is worth more than all of a title
+        fitting += [k for k in range(enough, len(widths)) if widths[k] <= room]
     x = float(right)
     if fitting:
         for part in reversed(choices[fitting[0]]):
