@@ -25,8 +25,14 @@ def require_pygame_ce() -> None:
             "pygame and pygame-ce overwrite each other and pygame is installed: "
             f"run: python -m pip uninstall -y pygame, then {reinstall}"
         )
-    if not _installed("pygame-ce"):
-        raise InputError(f"pygame-ce is not installed: {reinstall}")
+    hide_greeting()
+    # Not what is said to be installed: a program packed for machines without Python has no list of that.
+    try:
+        import pygame
+    except ImportError as error:
+        raise InputError(f"pygame-ce is not installed: {reinstall}") from error
+    if not getattr(pygame, "IS_CE", False):
+        raise InputError(f"pygame-ce is not installed, but another pygame: {reinstall}")
 
 
 def prepare_headless() -> None:

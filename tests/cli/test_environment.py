@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from types import ModuleType
 
 import pytest
 
@@ -30,10 +31,22 @@ def test_pygame_in_the_way_is_told(monkeypatch: pytest.MonkeyPatch, installed: l
     assert "\n" not in str(caught.value)
 
 
-def test_missing_pygame_ce_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("found", [None, ModuleType("pygame")], ids=["none", "another"])
+def test_missing_pygame_ce_is_told(
+    monkeypatch: pytest.MonkeyPatch, found: ModuleType | None
+) -> None:
     pretend_installed(monkeypatch)
+    monkeypatch.setitem(sys.modules, "pygame", found)
     with pytest.raises(InputError, match="pip install --force-reinstall pygame-ce"):
         environment.require_pygame_ce()
+
+
+def test_a_program_without_lists_of_what_is_installed_asks_pygame_itself(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As one that was packed for machines without Python."""
+    pretend_installed(monkeypatch)
+    environment.require_pygame_ce()
 
 
 @linux
