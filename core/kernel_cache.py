@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 
 PREFIX = "kernels-"
 UNUSED = 30 * 86_400.0  # [s] after which a folder goes
-CORE = Path(__file__).parent
+CORE = Path(__file__).resolve().parent
 SHIPPED = CORE / "compiled"  # folders that came with the program
 BUSY = 10.0  # [s] to wait for another process that keeps the same kernel
 
@@ -88,7 +88,9 @@ def place(folder: Path) -> Path:
 
 def keep(dispatcher: Any) -> None:
     """Keep what a dispatcher compiles in the place of its source, if it can be kept, and take what came with the program."""
-    where = place(Path(dispatcher.py_func.__code__.co_filename).parent)
+    # The module's file: in a program packed for machines without Python, a function knows no whole path.
+    module = sys.modules[dispatcher.py_func.__module__]
+    where = place(Path(str(module.__file__)).resolve().parent)
     dispatcher._cache = _Kept(
         _cache(dispatcher.py_func, where) if usable(where) else None,
         _cache(dispatcher.py_func, SHIPPED / where.name)

@@ -11,7 +11,7 @@ from core.warmup import compiled, compiling
 from sandbox.beside import beside
 from sandbox.draw import raster
 
-FOLDER = Path(raster.__file__).parent
+FOLDER = Path(raster.__file__).resolve().parent
 DRAWING = "drawing"  # name of this part of the kernels
 
 

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -318,3 +319,15 @@ def test_what_came_with_the_program_is_taken(tmp_path: Path) -> None:
     assert hits("a") == "1"
     kept.rename(kept.with_name(kernel_cache.PREFIX + "0" * 16))
     assert hits("b") == "0"
+
+
+def test_a_function_need_not_know_the_whole_path_of_its_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a program that was packed for machines without Python: the module knows it."""
+    module = ModuleType("packed")
+    module.__file__ = str(tmp_path / "packed.py")
+    monkeypatch.setitem(sys.modules, "packed", module)
+    source = "from core.jit import kernel\n@kernel\ndef double(x):\n    return 2.0 * x\n"
+    exec(compile(source, "packed.py", "exec"), module.__dict__)
+    assert module.double._cache.cache_path == str(kernel_cache.place(tmp_path.resolve()))
