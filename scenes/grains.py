@@ -133,15 +133,19 @@ def check_material(settings: Mapping[str, Value]) -> None:
             raise InputError(
                 "give softness or contact_stiffness, not both: set one of them back to its default"
             )
-        stiffest = max(material(settings, kind)[1] for kind in KINDS_OF_GRAINS)
-        if stiffest > MOST_STIFFNESS:
+
+        def stiffest_of(softness: float) -> float:
+            asked = {**settings, "softness": softness}
+            return max(material(asked, kind)[1] for kind in KINDS_OF_GRAINS)
+
+        if stiffest_of(softness) > MOST_STIFFNESS:
             raise InputError(
                 Text(
                     "contacts would be stiffer than {most:g} k: raise softness to {least:g}, "
                     "or bring stiffness_ratio nearer to 1",
                     most=MOST_STIFFNESS,
-                    # C − 2 falls as one over the softness.
-                    least=round_up(softness * (stiffest - 2.0) / (MOST_STIFFNESS - 2.0)),
+                    # C − 2 falls as one over the softness; from that of 1, as C may be more than a number can hold.
+                    least=round_up((stiffest_of(1.0) - 2.0) / (MOST_STIFFNESS - 2.0)),
                 )
             )
 

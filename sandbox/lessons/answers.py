@@ -79,9 +79,7 @@ class Answers:
         try:
             self._check()
             rows: list[Sequence[str]] = [] if self._started() else [COLUMNS]
-            append_lines(
-                self.path, ("" if self._whole() else "\n") + _lines([*rows, *self._waiting])
-            )
+            append_lines(self.path, _lines([*rows, *self._waiting]))
         except InputError as error:
             self.trouble = str(error)
         except OSError as error:
@@ -92,14 +90,6 @@ class Answers:
 
     def _started(self) -> bool:
         return self.path is not None and self.path.exists() and self.path.stat().st_size > 0
-
-    def _whole(self) -> bool:
-        """Does the file end with a line's end? A program that was killed may have left half a line."""
-        if self.path is None or not self._started():
-            return True
-        with self.path.open("rb") as file:
-            file.seek(-1, 2)
-            return file.read() == b"\n"
 
     def _check(self) -> None:
         if not self._started():

@@ -25,7 +25,7 @@ MOST_EVALUATIONS = 60_000
 STALE = fire.LISTS_STALE
 
 
-@kernel
+@kernel(allocates=True)  # rows are copied whole
 def to_smooth(chart, state):
     """x, y, θ, a, b → x, y, p, q1, q2; with friction the sixth row as it is."""
     for i in range(chart.shape[1]):
@@ -39,7 +39,7 @@ def to_smooth(chart, state):
         state[row] = chart[row]
 
 
-@kernel
+@kernel(allocates=True)  # rows are copied whole
 def to_chart(state, chart):
     """The way back: a is the longer semi-axis; of a circle θ = 0."""
     for i in range(chart.shape[1]):
@@ -53,7 +53,7 @@ def to_chart(state, chart):
         chart[row] = state[row]
 
 
-@kernel
+@kernel(allocates=True)  # rows are copied whole
 def chart_forces(chart, force, turned):
     """Forces on x, y, p, q1, q2 → forces on x, y, θ, a, b, by the chain rule."""
     for i in range(chart.shape[1]):
@@ -70,7 +70,7 @@ def chart_forces(chart, force, turned):
         turned[row] = force[row]
 
 
-@kernel
+@kernel(allocates=True)
 def run(
     m, box, rigid, friction, weight, limits, chart, velocity, turned, inverse_mass, record, most
 ):
