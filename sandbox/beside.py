@@ -40,7 +40,7 @@ def start(wanted: Sequence[str], *, idle: bool = False) -> subprocess.Popen[byte
         return subprocess.Popen(
             [sys.executable, "-m", "sandbox.preparation", IDLE if idle else HASTE, *wanted],
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE,  # which ends with this process, however that ends
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import html
 from pathlib import Path
 
+from core.errors import InputError
 from sandbox.files.folder import write_bytes, write_text
 from sandbox.lessons.lesson import Lesson, Predict, Said, Step
 from sandbox.words import language, words
@@ -229,8 +230,13 @@ def _text(text: str) -> str:
 
 
 def copy_lesson(source: Path, folder: Path) -> Path:
-    """The lesson itself beside its pages, to be played and changed."""
-    target = folder / source.name
-    if not (target.exists() and target.samefile(source)):
-        write_bytes(target, source.read_bytes())
+    """The lesson itself beside its pages, to be played and changed. Raises InputError where somebody has changed it there."""
+    target, lesson = folder / source.name, source.read_bytes()
+    if not target.exists():
+        write_bytes(target, lesson)
+    elif target.read_bytes() != lesson:
+        raise InputError(
+            f"{target} is another lesson, perhaps one that you have changed: "
+            "make its own sheets with lesson FILE, or give another folder"
+        )
     return target

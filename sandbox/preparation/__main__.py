@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import os
 import sys
+import threading
 
 from sandbox import environment
 from sandbox.beside import IDLE
 from sandbox.preparation import parts
 
+
+def _end_with_the_other() -> None:
+    """When the process that started this one is gone, nobody wants what is compiled here."""
+    sys.stdin.buffer.read()
+    os._exit(1)
+
+
 if __name__ == "__main__":
+    threading.Thread(target=_end_with_the_other, daemon=True).start()
     environment.prepare_headless()
     if sys.argv[1] == IDLE:
         parts.be_idle()

@@ -144,3 +144,19 @@ def test_a_lesson_in_english_alone_has_english_pages_alone() -> None:
     lesson = parse_lesson("mine", (HEAD + STEP).encode(), "")
     assert sheets.languages_of(lesson) == ("en",)
     assert sheets.languages_of(classroom.lesson("arches")) == TAUGHT
+
+
+def test_a_lesson_that_somebody_has_changed_is_left_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["lesson", "poisson", "--out", str(tmp_path)]) == 0
+    assert main(["lesson", "poisson", "--out", str(tmp_path), "--language", "de"]) == 0
+    mine = tmp_path / "poisson.toml"
+    mine.write_text(mine.read_text(encoding="utf-8") + "# mine\n", encoding="utf-8")
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    capsys.readouterr()
+    assert main(["lesson", "poisson", "--out", str(tmp_path)]) == 2
+    assert re.fullmatch(r"error: .*poisson\.toml is another lesson.*\n", capsys.readouterr().err)
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+    assert main(["lesson", str(mine), "--out", str(tmp_path)]) == 0
+    assert mine.read_text(encoding="utf-8").endswith("# mine\n")

@@ -134,3 +134,17 @@ def test_every_scene_has_its_parts() -> None:
     assert len(every) == len(set(every))
     for name in registry.names():
         assert set(parts.of_scene(registry.get(name))) <= set(every)
+
+
+def test_what_compiles_beside_ends_with_the_process_that_started_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However that ends: with it its end of the pipe is closed."""
+    from sandbox import beside
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    process = beside.start(["increments-periodic-rigid-friction"])
+    assert process is not None
+    assert process.stdin is not None
+    process.stdin.close()
+    assert process.wait(60.0) == 1

@@ -31,6 +31,7 @@ from sandbox.session.commands import (
 from sandbox.session.frame import Contacts
 from sandbox.session.history import Event
 from sandbox.window import timeline
+from sandbox.window.canvas.arrows import Arrows
 from sandbox.words import words
 from tests.window.desk import Desk
 
@@ -303,6 +304,16 @@ def test_arrow_keys_pull_the_handle(desk: Desk) -> None:
     desk.key(pygame.K_TAB)  # shows where the keyboard is
     desk.key(pygame.K_TAB)  # and leaves
     desk.until(lambda: sent(desk)[-1] == Release("intruder"))
+
+
+def test_a_handle_that_went_with_its_scene_is_not_let_go(desk: Desk) -> None:
+    """Else the next scene says that it has nothing of that name."""
+    desk.key(pygame.K_RIGHT)
+    (arrows,) = (part for part in desk.app.stage.parts if isinstance(part, Arrows))
+    arrows._held = "plate"  # of the scene before, that a lesson has left
+    desk.key(pygame.K_RIGHT)
+    desk.until(lambda: sent(desk).count(Grab("intruder")) == 2)
+    assert not any(isinstance(command, Release) for command in sent(desk))
 
 
 def test_hand_by_keyboard_is_never_far_ahead(desk: Desk) -> None:

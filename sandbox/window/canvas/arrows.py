@@ -76,8 +76,8 @@ class Arrows(Silent):
         """Another gesture, to be undone by itself, after a pause or with another handle."""
         now = time.perf_counter()
         if handle.name != self._held or now - self._pressed > PAUSE:
-            if self._held and self._held != handle.name:
-                self.stage.send(Release(self._held))
+            if self._held != handle.name:
+                self._let_go()
             self._held = handle.name
             self._target = handle.target if handle.target is not None else (handle.x, handle.y)
             self.stage.send(Grab(handle.name))
@@ -101,9 +101,14 @@ class Arrows(Silent):
         handle = self.handle_state()
         if self._held and (handle is None or handle.name != self._held or self.stage.mouse.holding):
             if not self.stage.mouse.holding:
-                self.stage.send(Release(self._held))
+                self._let_go()
             self._held = ""
         return False
+
+    def _let_go(self) -> None:
+        """Of what is held, unless it went with the scene that it was in."""
+        if f"{CANVAS}/{self._held}" in self.stops():
+            self.stage.send(Release(self._held))
 
     def draw(self, painter: Painter) -> None:
         """The ring round the canvas and the handle, when Tab has brought the keyboard here."""
