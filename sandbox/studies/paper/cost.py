@@ -71,7 +71,7 @@ PROTOCOLS = (
     ),
     _Protocol(
         "Fig. 4, steady shear",
-        "strain steps of 2.5e-3; 16 systems, at λ = 0.01 and 100 six and fewer points, at λ = 1 eight",
+        "strain steps of 2.5e-3; 8 systems, at λ = 0.01 and 100 six and fewer points",
         "strain steps of 1e-4; 16 systems of each λ",
         _steady,
         25.0,

@@ -33,7 +33,7 @@ FRACTIONS = {
 AROUND_HIGH = {0.1: (0.94, 1.06, 1.12), 10.0: (0.86, 0.88, 0.94)}  # what a variation needs
 QUICK_FRACTIONS = {0.1: (0.86, 0.94, 1.06, 1.12), 10.0: (0.85, 0.86, 0.88, 0.94)}
 STEADY, SMALL, MIDDLE = 0, 1, 2  # protocols of the scene
-FEW = 8  # seeds of a variation, and of λ = 1
+FEW = 8  # seeds of steady shear, of a variation, and of λ = 1
 FEWEST = 6  # of the costliest kinds
 FLOWS = 0.3  # shear strain after which the flow counts as steady
 POSITIVE = 1e-4  # [k] a smaller pressure is none: the plates do not feel each other

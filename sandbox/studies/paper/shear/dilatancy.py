@@ -24,7 +24,7 @@ from sandbox.studies.paper.claims import (
 )
 from sandbox.studies.paper.conditions import AUXETIC, NEUTRAL, REGULAR, label, of_lam
 from sandbox.studies.paper.runs import Request, Result
-from sandbox.studies.paper.shear.cell import MIDDLE, cell_runs, pressure, regular_over_auxetic
+from sandbox.studies.paper.shear.cell import FEW, MIDDLE, cell_runs, pressure, regular_over_auxetic
 
 FAR = 0.03  # shear strain that is far from the middle of a cycle of 0.04
 MIDDLE_FRACTION = 0.92  # packing fraction of the middle cycles
@@ -44,6 +44,7 @@ def middle_cycles(quick: bool) -> list[Request]:
             MIDDLE,
             dict.fromkeys(lams, (MIDDLE_FRACTION,)),
             {"cycles": 1 if quick else 3, "friction": friction},
+            FEW,
         )
     ]
 

@@ -80,8 +80,7 @@ def steady_shears(quick: bool) -> list[Request]:
     plain = {"strain": 0.8, "step": STEP}
     dense = dict.fromkeys((REGULAR, AUXETIC), COMMON[-1:])
     return [
-        *cell_runs(quick, STEADY, fractions_of(REGULAR, AUXETIC), plain),
-        *cell_runs(quick, STEADY, fractions_of(NEUTRAL), plain, FEW),
+        *cell_runs(quick, STEADY, fractions_of(REGULAR, NEUTRAL, AUXETIC), plain, FEW),
         *cell_runs(quick, STEADY, fractions_of(*EXTREMES), plain, FEWEST),
         *cell_runs(quick, STEADY, dense, {**plain, "step": FINE_STEP}, FEW),
     ]
