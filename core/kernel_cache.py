@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from contextlib import suppress
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -90,12 +90,9 @@ def keep(dispatcher: Any) -> None:
     """Keep what a dispatcher compiles in the place of its source, if it can be kept, and take what came with the program."""
     # The module's file: in a program packed for machines without Python, a function knows no whole path.
     module = sys.modules[dispatcher.py_func.__module__]
-    where = place(Path(str(module.__file__)).resolve().parent)
+    # Named now, while the sources are those that were imported.
     dispatcher._cache = _Kept(
-        _cache(dispatcher.py_func, where) if usable(where) else None,
-        _cache(dispatcher.py_func, SHIPPED / where.name)
-        if (SHIPPED / where.name).is_dir()
-        else None,
+        dispatcher.py_func, place(Path(str(module.__file__)).resolve().parent)
     )
 
 
@@ -135,27 +132,50 @@ def _cache(function: Any, where: Path) -> Any:
 
 
 @cache
-def usable(where: Path) -> bool:
-    """Can something be kept there? If not, it is said, once."""
+def trouble(where: Path) -> str:
+    """Why nothing can be kept there; empty: it can."""
     try:
         if not where.is_absolute():
             raise OSError("nobody's home is known")
         where.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=where).close()
     except OSError as error:
-        reason = reason_of(error)
-        log.warning(
-            "compiled code cannot be kept in %s (%s): every start compiles it anew", where, reason
-        )
-        return False
-    return True
+        return reason_of(error)
+    return ""
+
+
+def usable(where: Path) -> bool:
+    """Can something be kept there? If not, it is said, once for all that would lie side by side."""
+    reason = trouble(where)
+    if reason:
+        _warn(where.parent, reason)
+    return not reason
+
+
+@cache
+def _warn(root: Path, reason: str) -> None:
+    log.warning(
+        "compiled code cannot be kept in %s (%s): every start compiles it anew", root, reason
+    )
 
 
 class _Kept:
-    """Cache of one function: what cannot be read is missing, what cannot be written is not kept."""
+    """Cache of one function: what cannot be read is missing, what cannot be written is not kept.
 
-    def __init__(self, own: Any, shipped: Any) -> None:
-        self._own, self._shipped = own, shipped
+    The disk is left alone until the function is asked for: most commands compile nothing.
+    """
+
+    def __init__(self, function: Any, where: Path) -> None:
+        self._function, self._where = function, where
+
+    @cached_property
+    def _own(self) -> Any:
+        return _cache(self._function, self._where) if usable(self._where) else None
+
+    @cached_property
+    def _shipped(self) -> Any:
+        where = SHIPPED / self._where.name
+        return _cache(self._function, where) if where.is_dir() else None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._own or self._shipped, name)

@@ -15,6 +15,8 @@ from collections.abc import Callable, Sequence
 from core.errors import InputError, nearest
 from sandbox import __version__
 from sandbox.cli import arguments, streams, verbs
+from sandbox.cli import lesson as lessons
+from sandbox.cli import prepare as preparing
 from sandbox.cli import study as studies
 from sandbox.cli import sweep as sweeps
 from sandbox.cli.arguments import Parser, argument
@@ -137,7 +139,12 @@ def _add_play(command: Command) -> None:
     )
     _add_scene_options(play)
     _add_compare(play)
-    play.add_argument("--log", metavar="FILE.jsonl", help="write down what is done, for replay")
+    play.add_argument(
+        "--log",
+        metavar="FILE.jsonl",
+        help="write down what is done, for replay; each further run of the window, of another scene, tour or file, beside it: "
+        "FILE-2.jsonl, FILE-3.jsonl, …",
+    )
     play.add_argument(
         "--answers",
         metavar="FILE.csv",
@@ -276,10 +283,13 @@ def _add_study(command: Command) -> None:
 
 
 def _add_prepare(command: Command) -> None:
-    prepare = command(
-        "prepare", verbs.prepare, "Compile everything now, so that no scene makes anybody wait."
+    preparing.add_options(
+        command(
+            "prepare",
+            preparing.prepare,
+            "Compile everything now, so that no scene makes anybody wait.",
+        )
     )
-    prepare.add_argument("scenes", nargs="*", metavar="SCENE", help="these instead of all")
 
 
 def _add_site(command: Command) -> None:
@@ -304,19 +314,11 @@ def _add_site(command: Command) -> None:
 def _add_lesson(command: Command) -> None:
     lesson = command(
         "lesson",
-        verbs.lesson,
+        lessons.lesson,
         "Write a lesson for paper: worksheets, and aims, plan and answers for the teacher, beside the lesson itself. "
         "Without a name: print which lessons there are.",
     )
-    lesson.add_argument(
-        "name",
-        nargs="?",
-        metavar="NAME",
-        help="one that the program brings along, or a file LESSON.toml",
-    )
-    lesson.add_argument(
-        "--out", metavar="DIR", help="folder for the pages, which any browser prints"
-    )
+    lessons.add_options(lesson)
     _add_language(lesson, "all in which the lesson is written")
 
 

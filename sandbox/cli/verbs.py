@@ -8,7 +8,6 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -207,25 +206,6 @@ def study(options: argparse.Namespace) -> int:
         return INTERRUPTED
 
 
-def prepare(options: argparse.Namespace) -> int:
-    """Compile all kernels that scenes may need, and say how long it takes."""
-    from sandbox import environment
-    from sandbox.preparation import parts
-    from scenes import registry
-
-    environment.prepare_headless()
-    scenes = [registry.get(name).name for name in options.scenes] or registry.names()
-    missing = parts.missing(parts.of_scenes(scenes))
-    began = time.perf_counter()
-    parts.carry_out(missing, lambda part, seconds: print(f"{seconds:6.1f} s  {part}", flush=True))
-    took = time.perf_counter() - began
-    what = counted(len(missing), "part")
-    print(f"compiled {what} of the kernels in {took:.1f} s" if missing else "everything is there")
-    if parts.missing(missing):
-        raise InputError("what was compiled cannot be kept: every start will compile it anew")
-    return OK
-
-
 def site(options: argparse.Namespace) -> int:
     """Write the gallery."""
     from sandbox.files.folder import prepare_folder
@@ -249,32 +229,6 @@ def site(options: argparse.Namespace) -> int:
         print(
             f"larger than {gallery.MOST / 1e6:g} MB: use --scene or --steps for a smaller gallery"
         )
-    return OK
-
-
-def lesson(options: argparse.Namespace) -> int:
-    """Write a lesson's pages, or say which lessons there are."""
-    from sandbox.lessons import classroom, sheets
-
-    if options.name is None:
-        if options.out:
-            raise InputError(f"--out needs a lesson: {arguments.any_of(classroom.names())}")
-        for name in classroom.names():
-            found = classroom.lesson(name)
-            print(f"{name}: {found.title} ({found.minutes} minutes)")
-        return OK
-    found = classroom.named(options.name)
-    if options.out is None:
-        raise InputError(f"nothing to write: give --out DIR, or write play {options.name}")
-    from sandbox.files.folder import prepare_folder
-
-    folder = prepare_folder(options.out, "")
-    source = (
-        classroom.path_of(options.name) if options.name in classroom.names() else Path(options.name)
-    )
-    codes = (options.language,) if options.language else ()
-    for path in [sheets.copy_lesson(source, folder), *sheets.write_sheets(found, folder, codes)]:
-        print(path)
     return OK
 
 

@@ -39,6 +39,11 @@ class GrowingLog:
         self._thread = threading.Thread(target=self._run, name="log", daemon=True)
         self._thread.start()
 
+    @property
+    def begun(self) -> bool:
+        """Has anything been done in this run?"""
+        return self._newest is not None and bool(self._newest.commands or self._newest.end)
+
     def keep(self, newest: Log) -> None:
         """What there is to be written now; takes no time."""
         self._newest = newest

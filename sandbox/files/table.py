@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import os
 import time
@@ -14,6 +12,7 @@ from typing import Any, BinaryIO, Protocol
 
 from core.errors import InputError, reason_of
 from core.files import atomic_write, followed, is_special
+from sandbox.files import cells
 from sandbox.files.lines import append
 from sandbox.files.pipes import with_reader
 from sandbox.interrupts import deferred
@@ -51,10 +50,8 @@ class Spelling:
 
     def lines(self, rows: Iterable[Sequence[object]]) -> bytes:
         """Whole lines."""
-        text = io.StringIO(newline="")
-        writer = csv.writer(text, delimiter=self.separator, lineterminator="\n")
-        writer.writerows([self._cell(value) for value in row] for row in rows)
-        return text.getvalue().encode()
+        spelt = ([self._cell(value) for value in row] for row in rows)
+        return cells.lines(spelt, self.separator).encode()
 
     def head(self, names: Iterable[str]) -> bytes:
         """How a file begins."""

@@ -1,14 +1,12 @@
 """What was predicted and answered in lessons, as a table without personal data: no names, and of the time the day alone.
 
 A row is added as soon as it is given, whole, also where several write to one file. Cells are numbers and keys, never texts of a
-lesson: what a spreadsheet would take for a formula cannot stand in them.
+lesson.
 """
 
 from __future__ import annotations
 
-import csv
 import datetime
-import io
 import re
 import secrets
 from collections.abc import Sequence
@@ -18,6 +16,7 @@ import numpy as np
 
 from core.arrays import Floats
 from core.errors import InputError, reason_of
+from sandbox.files import cells
 from sandbox.files.lines import append_lines
 from sandbox.lessons.lesson import Lesson, Predict, Step
 from sandbox.session.frame import Frame
@@ -79,7 +78,7 @@ class Answers:
         try:
             self._check()
             rows: list[Sequence[str]] = [] if self._started() else [COLUMNS]
-            append_lines(self.path, _lines([*rows, *self._waiting]))
+            append_lines(self.path, cells.lines([*rows, *self._waiting]))
         except InputError as error:
             self.trouble = str(error)
         except OSError as error:
@@ -123,9 +122,3 @@ def _cell(predict: Predict, given: Given) -> str:
 def _points(along: Floats, up: Floats) -> str:
     """``x:y`` by ``x:y``, as far as there are values."""
     return " ".join(f"{x:.4g}:{y:.4g}" for x, y in zip(along, up, strict=True) if np.isfinite(y))
-
-
-def _lines(rows: Sequence[Sequence[str]]) -> str:
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue()

@@ -53,6 +53,17 @@ def missing(wanted: Sequence[str]) -> list[str]:
     return [part for part in wanted if not _kept(part)]
 
 
+def require_room(wanted: Sequence[str]) -> None:
+    """Raise InputError if what is compiled of them could not be kept; where there is nothing to compile it need not be."""
+    for folder in (kernel_cache.CORE, drawing.FOLDER) if wanted else ():
+        where = kernel_cache.place(folder)
+        if why := kernel_cache.trouble(where):
+            raise InputError(
+                f"compiled code cannot be kept in {where.parent} ({why}), so that nothing would be gained: make that folder "
+                "writable, or name another in the variable NUMBA_CACHE_DIR, then and when the window is opened"
+            )
+
+
 def carry_out(wanted: Sequence[str], tell: Callable[[str, float], None] = _silent) -> None:
     """Compile them, or load them from where they are kept; ``tell(part, seconds)`` is called after each."""
     for part in wanted:

@@ -8,7 +8,6 @@ dropped when the folder is opened again, and made anew. At the end both tables a
 from __future__ import annotations
 
 import csv
-import io
 import json
 import math
 import re
@@ -23,6 +22,7 @@ from core.errors import InputError, reason_of
 from core.files import is_special
 from sandbox import __version__
 from sandbox.ensemble.machine import machine
+from sandbox.files import cells
 from sandbox.files.folder import prepare_folder, write_text
 from sandbox.files.lines import append_lines
 from sandbox.interrupts import deferred
@@ -174,7 +174,7 @@ def read_rows(path: Path, names: Sequence[str]) -> list[Row]:
         raise InputError(f"{path}: {reason_of(error)}") from None
     whole = text[: text.rfind("\n") + 1]
     try:
-        rows = list(csv.reader(io.StringIO(whole, newline="")))
+        rows = cells.read(whole)
     except csv.Error as error:
         raise InputError(f"{path}: damaged ({error})") from None
     if not rows:
@@ -209,7 +209,4 @@ def as_read(row: Mapping[str, object]) -> Row:
 
 
 def _lines(rows: Iterable[Row], names: Sequence[str]) -> str:
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([row[name] for name in names] for row in rows)
-    return text.getvalue()
+    return cells.lines([row[name] for name in names] for row in rows)

@@ -70,8 +70,8 @@ def run(
     """Open the window and stay until it is closed. Without a scene, a file of one or a lesson, it starts with the menu.
 
     ``packings``: side by side, if any are named. ``script``: the scene's own drive is on from the start. ``answers``: what is
-    predicted in lessons is added to them. ``log``: where the log of the last scene started is written, all the time. SIGTERM and
-    SIGHUP ask for that too: the autosave stays then, and the code is 128 and the signal's number. Raises InputError without a
+    predicted in lessons is added to them. ``log``: where the first run is logged, all the time; further ones beside it. SIGTERM
+    and SIGHUP close it too: the autosave stays then, and the code is 128 and the signal's number. Raises InputError without a
     display, for what does not exist and for a log that cannot be written.
     """
     sys.setswitchinterval(SWITCH)
@@ -193,12 +193,15 @@ class App:
         stage.sound.close()
         self._background.close()
         self.pages.explore.explorer.stop()
-        self.farewell = stage.recorder.close()
+        said = [stage.recorder.close()]
         pygame.display.quit()
         try:
             ended = stage.panes.close(clean)
         finally:
             warm = self._warmup.join(0.0)
+            if len(logs := stage.panes.logs) > 1:
+                said.append(words.LOGS_WRITTEN.format(names=words.LIST_SIGN.join(map(str, logs))))
+            self.farewell = "\n".join(filter(None, said))
         return warm and ended
 
     # -- one picture --

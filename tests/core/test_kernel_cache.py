@@ -203,6 +203,28 @@ def test_where_nothing_can_be_kept_kernels_run_all_the_same(tmp_path: Path) -> N
     assert not list(tmp_path.rglob("*.nbi"))  # nor beside the source
 
 
+def test_it_is_said_once_for_all_folders_of_sources(tmp_path: Path) -> None:
+    """Physics and drawing are kept side by side: what stands in the way of one does so for the other."""
+    (tmp_path / "cache").write_text("a file")
+    program = (
+        "from core import kernel_cache as k\n"
+        "from sandbox.draw import raster\n"
+        "import pathlib\n"
+        "folders = k.CORE, pathlib.Path(raster.__file__).parent\n"
+        "print([k.usable(k.place(folder)) for folder in folders])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=REPOSITORY,
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache" / "numba")},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.stdout == "[False, False]\n"
+    assert len(done.stderr.splitlines()) == 1, done.stderr
+
+
 MOVED = b"cno_such_module\nThing\n."  # the pickle of a class that is gone
 DAMAGES: dict[str, Callable[[bytes], bytes]] = {
     "empty": lambda whole: b"",

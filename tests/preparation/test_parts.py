@@ -110,6 +110,38 @@ def test_what_is_compiled_once_is_there_for_good(tmp_path: Path) -> None:
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.nbc")} == kept
 
 
+def test_where_nothing_can_be_kept_nothing_is_compiled_ahead(tmp_path: Path) -> None:
+    """A file where the folder should be: not even root can write there. One line, before any work."""
+    (tmp_path / "file").touch()
+    done = run("-m", "sandbox", "prepare", cache=tmp_path / "file" / "kernels")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert str(tmp_path / "file" / "kernels") in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("list",),
+        ("lesson",),
+        ("lesson", "poisson", "--out", "{}"),
+        ("record", "hopper", "--out", "nowhere/film.mp4"),
+        ("--help",),
+    ],
+    ids=" ".join,
+)
+def test_what_compiles_nothing_leaves_the_place_of_compiled_code_alone(
+    words: tuple[str, ...], tmp_path: Path
+) -> None:
+    (tmp_path / "file").touch()
+    words = tuple(word.format(tmp_path / "pages") for word in words)
+    for cache in (tmp_path / "file" / "kernels", tmp_path / "fresh"):
+        done = run("-m", "sandbox", *words, cache=cache)
+        assert str(cache) not in done.stderr
+    assert not (tmp_path / "fresh").exists()
+
+
 def test_an_unknown_scene_is_a_mistake() -> None:
     done = run("-m", "sandbox", "prepare", "hoper")
     assert done.returncode == 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -217,6 +218,54 @@ def test_the_log_is_that_of_the_scene_that_runs(tmp_path: Path) -> None:
     last = read_log(log)
     assert (last.scene, last.packing) == ("single_grain", "regular")
     assert list(replay(last))[-1].state_hash() == last.hash
+
+
+def test_every_run_has_a_log(tmp_path: Path) -> None:
+    """Whatever begins next: a scene, the same again, packings side by side, a file. What stood there is no place for one."""
+    log = tmp_path / "it.jsonl"
+    (tmp_path / "it-3.jsonl").write_text("somebody's")
+    session = built(grains=6)
+    write_scene(tmp_path / "it.scene", session.made())
+    run = Panes("mixed", 1, autosave=None, log=log)
+    begin: list[Callable[[], None]] = [
+        lambda: run.start("single_grain"),
+        lambda: run.start("single_grain"),
+        lambda: run.start("grain_row", packings=("regular", "auxetic")),
+        lambda: run.open(tmp_path / "it.scene"),
+    ]
+    ends, said = [], []
+    for each in begin:
+        each()
+        said.append(run.tick())
+        run.send(Protocol(True))
+        ends.append(wait(run, lambda frame: frame.increment > 2).increment)
+        run.pause_or_go_on()
+    run.start("hopper")  # is left before it is there
+    run.close()
+    names = ["it.jsonl", "it-2.jsonl", "it-4.jsonl", "it-5.jsonl"]
+    assert [path.name for path in run.logs] == names
+    assert [name in text for name, text in zip(names[1:], said[1:], strict=True)] == [True] * 3
+    assert said[0] == ""
+    found = [read_log(path) for path in run.logs]
+    assert [one.scene for one in found] == ["single_grain", "single_grain", "grain_row", "workshop"]
+    for one, end in zip(found, ends, strict=True):
+        assert one.end >= end
+        assert [*replay(one)][-1].state_hash() == one.hash
+    assert (tmp_path / "it-3.jsonl").read_text() == "somebody's"
+
+
+def test_a_log_before_that_could_not_be_written_is_told(tmp_path: Path) -> None:
+    run = Panes("mixed", 1, autosave=None, log=tmp_path / "there" / "it.jsonl")
+    run.start("single_grain")
+    run.send(Protocol(True))
+    wait(run, lambda frame: frame.increment > 2)
+    run.start("single_grain")
+    assert re.fullmatch(
+        r"the log of the run before .*it.jsonl: no such file.*", run.tick(), re.IGNORECASE
+    )
+    wait(run, lambda frame: True)
+    with pytest.raises(InputError, match=r"it-2\.jsonl"):
+        run.close()
 
 
 def test_side_by_side_all_begin_together_from_the_file(run: Panes, tmp_path: Path) -> None:

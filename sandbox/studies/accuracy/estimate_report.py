@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from sandbox.files import cells
 from sandbox.studies.accuracy.live import FIT, JUDGE
 
 Estimates = Mapping[str, Mapping[str, Mapping[str, Any]]]  # by scene and packing
@@ -106,13 +105,11 @@ def about_estimates(found: Estimates) -> str:
 
 def as_runs(found: Estimates) -> str:
     """The coverage of each drive as CSV: those of the seeds that were fitted, too."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(RUNS)
+    written: list[Sequence[object]] = [RUNS]
     for scene, packings in found.items():
         for packing, one in packings.items():
             for seed, drive in one["drives"].items():
-                writer.writerow(
+                written.append(
                     [
                         scene,
                         packing,
@@ -127,7 +124,7 @@ def as_runs(found: Estimates) -> str:
                         ),
                     ]
                 )
-    return text.getvalue()
+    return cells.lines(written)
 
 
 def _plain(value: float) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sandbox.ensemble.estimates import CONFIDENCE, Exact
+from sandbox.files import cells
 from sandbox.studies.classics.case import FIRST, Case, Check, Row
 from sandbox.studies.common.finite import finite
 from sandbox.studies.common.verdicts import FAILS, HOLDS, OPEN
@@ -90,17 +89,14 @@ def as_table(rows: Sequence[Row]) -> str:
     """One row a run: case, seed, its settings, what was measured, seconds of one core."""
     settings = sorted({name for row in rows for name, _ in row.job.settings})
     numbers = sorted({name for row in rows for name in row.numbers})
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(
-        ["case", "seed", *settings, *(f"measured_{name}" for name in numbers), "seconds"]
-    )
+    header = ["case", "seed", *settings, *(f"measured_{name}" for name in numbers), "seconds"]
+    written: list[Sequence[object]] = [header]
     for row in rows:
         asked = dict(row.job.settings)
         found = [f"{row.numbers[n]:.10g}" if n in row.numbers else "" for n in numbers]
         told = [asked.get(name, "") for name in settings]
-        writer.writerow([row.job.case, row.job.seed or "", *told, *found, f"{row.seconds:.3f}"])
-    return text.getvalue()
+        written.append([row.job.case, row.job.seed or "", *told, *found, f"{row.seconds:.3f}"])
+    return cells.lines(written)
 
 
 def as_json(verdicts: Sequence[Verdict], failures: Sequence[str], about: Mapping[str, Any]) -> str:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Mapping, Sequence
 from statistics import mean, median
 from typing import Any
 
 from sandbox.ensemble.estimates import wilson
+from sandbox.files import cells
 from sandbox.studies.common.finite import finite
 from sandbox.studies.hand.jobs import Row
 from sandbox.studies.hand.tour_claims import BROKEN, TENDENCIES
@@ -37,14 +36,12 @@ COLUMNS = (
 
 def as_table(rows: Sequence[Row]) -> str:
     """One row a push or random hand; lengths in R, forces in k R."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    written: list[Sequence[object]] = [COLUMNS]
     for row in rows:
         if row["part"] != "tour":
             told = {**row, "failing": "; ".join(row.get("failing", []))}
-            writer.writerow(["" if told.get(c) is None else told[c] for c in COLUMNS])
-    return text.getvalue()
+            written.append(["" if told.get(c) is None else told[c] for c in COLUMNS])
+    return cells.lines(written)
 
 
 def as_json(rows: Sequence[Row], failures: Sequence[str], about: Mapping[str, Any]) -> str:

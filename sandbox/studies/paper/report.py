@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -13,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sandbox.ensemble.estimates import CONFIDENCE, Exact
+from sandbox.files import cells
 from sandbox.studies.common.finite import finite
 from sandbox.studies.paper.claims import (
     NOT_MEASURED,
@@ -194,9 +193,7 @@ def as_table(results: Sequence[Result], used: Mapping[Request, Sequence[str]]) -
     header += ["seconds", "ended_early", "failure"]
     header += [f"{name}_{what}" for name in columns for what in ("mean", "max", "last")]
     header += [f"{name}_{what}" for name in lists for what in ("count", "mean")]
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
+    written: list[Sequence[object]] = [header]
     for result in results:
         request = result.request
         asked = dict(request.settings)
@@ -214,8 +211,8 @@ def as_table(results: Sequence[Result], used: Mapping[Request, Sequence[str]]) -
                 if entries is None
                 else [len(entries), _told(float(np.mean(entries))) if entries else ""]
             )
-        writer.writerow(row)
-    return text.getvalue()
+        written.append(row)
+    return cells.lines(written)
 
 
 def _three(values: Sequence[float]) -> list[str]:

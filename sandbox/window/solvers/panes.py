@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from core.errors import InputError, reason_of
 from sandbox.files.autosave import Autosave, Leftover
 from sandbox.files.growing_log import GrowingLog
+from sandbox.files.run_logs import RunLogs
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
@@ -60,10 +61,11 @@ class Panes:
         autosave: Autosave | None = None,
         log: str | os.PathLike[str] | None = None,
     ) -> None:
-        """``log``: where that of the last scene started is written, side by side that of the first packing."""
+        """``log``: where the first run is logged, further ones beside it; side by side that of the first packing."""
         self.autosave = autosave
-        self._path = log
-        self._log: GrowingLog | None = None
+        self._logs = None if log is None else RunLogs(log)
+        self._log: GrowingLog | None = None  # of the run that there is
+        self._news = ""  # of it, to be told
         self._trouble = ""  # with it, that was told
         self.packing = packing  # chosen in the menu, for the next scene
         self.curves = Curves()
@@ -190,14 +192,16 @@ class Panes:
     def _begin(self, wanted: Wanted, kinds: Sequence[str], sessions: Sequence[Session]) -> None:
         """Leave what runs, and begin with these."""
         self._keep_curves()
+        before = self._main
         self._leave(self._panes)
+        if before is not None and before.solver not in self._leaving:
+            self._log_the_end(before)
         self._wanted = self._start = wanted
         self._gone_back = None
         self._paused_by_menu = False
         self._conductor = Conductor(begins_anew=self._begins_anew)
         self._conductor.set_speed(self._speed)
-        self._close_log()
-        self._log = None if self._path is None else GrowingLog(self._path)
+        self._begin_log()
         self._runs = ()
         logged = kinds.index(wanted.packing)
         self._panes = [
@@ -205,11 +209,18 @@ class Panes:
             for place, (kind, session) in enumerate(zip(kinds, sessions, strict=True))
         ]
 
-    def _close_log(self) -> None:
-        """Of the scene before: the next takes its place, unless that is never built."""
-        if self._log is not None:
-            with contextlib.suppress(InputError):
-                self._log.close()
+    def _begin_log(self) -> None:
+        if self._logs is not None:
+            self._log = self._logs.begin()
+            further = len(self._logs.paths) > 1
+            self._news = words.LOG_FURTHER.format(name=self._log.path.name) if further else ""
+            if self._logs.lost:
+                self._news = words.LOG_LOST.format(reason=self._logs.lost)
+
+    def _log_the_end(self, main: Pane) -> None:
+        """What has been done in the last increment of a run whose thread has ended."""
+        if self._log is not None and main.solver.snapshot.frame and not main.session.busy:
+            self._log.keep(main.session.log())
 
     def compare(self) -> str:
         """Put the scene's other packings beside the present one, or take them away; returns what to say."""
@@ -362,11 +373,21 @@ class Panes:
         gone_back = self._gone_back
         if gone_back is not None and seen.serial > gone_back and seen.phase == "running":
             self._follow(seen.frame)
-        return self._new_trouble()
+        return self._new_trouble() or self._news_of_log()
+
+    @property
+    def logs(self) -> list[Path]:
+        """Those that there are, in the order of the runs."""
+        return [] if self._logs is None else [p for p in self._logs.paths if p.exists()]
+
+    def _news_of_log(self) -> str:
+        """Where a further run is logged, or that the one before is lost; once."""
+        news, self._news = self._news, ""
+        return news
 
     def _new_trouble(self) -> str:
         """That the log cannot be written, once."""
-        trouble = "" if self._log is None else self._log.trouble
+        trouble = "" if self._logs is None else self._logs.trouble
         known, self._trouble = self._trouble, trouble
         return words.LOG_TROUBLE.format(reason=trouble) if trouble and not known else ""
 
@@ -390,7 +411,7 @@ class Panes:
 
     def _end(self) -> bool:
         """End the threads, all at the same time, and the log: what is not finished by then is not in it."""
-        main, log = self._main, self._log
+        main = self._main
         solvers = [pane.solver for pane in self._panes if pane is not main] + self._leaving
         for solver in solvers:
             solver.stop(0.0)
@@ -398,10 +419,10 @@ class Panes:
         if main is not None:
             solvers = [main.solver, *solvers]
         stopped = [solver.stop(max(end - time.monotonic(), 0.0)) for solver in solvers]
-        if log is not None:
-            if main is not None and stopped[0] and self.snapshot.frame and not main.session.busy:
-                log.keep(main.session.log())
-            log.close()
+        if main is not None and stopped[0]:
+            self._log_the_end(main)
+        if self._logs is not None:
+            self._logs.close()
         return all(stopped)
 
     def _close_autosave(self, clean: bool) -> None:
