@@ -29,6 +29,9 @@ DEEDS = (
     "measure",
 )
 
+# Which way a handle is to go: on the screen, or towards the middle of what there is and away from it.
+WAYS = ("left", "right", "up", "down", "inwards", "outwards")
+
 Kind = Literal["choice", "number", "sketch"]
 
 
@@ -48,10 +51,11 @@ class Said:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What a person is asked to do; exactly one of these is set, ``by``, ``or_event`` and ``below`` apart."""
+    """What a person is asked to do; exactly one of these is set, ``by``, ``way``, ``or_event`` and ``below`` apart."""
 
     moved: str = ""  # a handle, from where it was
     by: float = 0.0  # at least so far [R]
+    way: str = ""  # in that one of ``WAYS``; none: whichever way
     event: str = ""  # a kind of event since then
     or_event: str = ""  # or another kind
     view: str = ""  # another way to look at the grains

@@ -9,14 +9,18 @@ from dataclasses import dataclass
 from sandbox.lessons.lesson import Condition
 from sandbox.session.frame import Frame
 
+NEAR = 1e-3  # a hand that is no further short of a place is there [R]
+ON_SCREEN = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
+
+Point = tuple[float, float]
+
 
 @dataclass(frozen=True, slots=True)
 class Moment:
     """What conditions look at, of all panes together."""
 
-    handles: tuple[
-        Mapping[str, tuple[float, float]], ...
-    ]  # of every pane: one of them may be locked
+    handles: tuple[Mapping[str, Point], ...]  # of every pane: one of them may be locked
+    middles: tuple[Point, ...]  # of what there is in every pane
     settings: Mapping[str, object]
     events: tuple[tuple[str, int, int], ...]  # kind, increment, pane
     view: str
@@ -34,6 +38,7 @@ class Moment:
             handles=tuple(
                 {handle.name: (handle.x, handle.y) for handle in frame.handles} for frame in frames
             ),
+            middles=tuple(_middle(frame.bounds) for frame in frames),
             settings=dict(first.settings),
             events=tuple(
                 (event.kind, event.increment, pane)
@@ -54,8 +59,10 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
     c = condition
     if c.moved:
         return any(
-            c.moved in before and c.moved in after and _apart(before[c.moved], after[c.moved], c.by)
-            for before, after in zip(then.handles, now.handles, strict=False)
+            c.moved in before
+            and c.moved in after
+            and _gone(before[c.moved], after[c.moved], c.way, middle) >= c.by - NEAR
+            for before, after, middle in zip(then.handles, now.handles, then.middles, strict=False)
         )
     if c.event:
         return any(
@@ -79,5 +86,16 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
     return now.increment - then.increment >= c.increments
 
 
-def _apart(a: tuple[float, float], b: tuple[float, float], least: float) -> bool:
-    return math.dist(a, b) >= least
+def _gone(start: Point, end: Point, way: str, middle: Point) -> float:
+    """How far from start to end, as the way is said; whichever way where none is [R]."""
+    across, up = end[0] - start[0], end[1] - start[1]
+    if not way:
+        return math.hypot(across, up)
+    x, y = ON_SCREEN.get(way) or (middle[0] - start[0], middle[1] - start[1])
+    along = (across * x + up * y) / (math.hypot(x, y) or 1.0)
+    return -along if way == "outwards" else along
+
+
+def _middle(bounds: tuple[float, float, float, float]) -> Point:
+    left, bottom, right, top = bounds
+    return 0.5 * (left + right), 0.5 * (bottom + top)

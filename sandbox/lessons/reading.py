@@ -19,6 +19,7 @@ from core.files import is_special
 from sandbox.lessons.lesson import (
     DEEDS,
     SECTIONS,
+    WAYS,
     Condition,
     Kind,
     Lesson,
@@ -216,6 +217,7 @@ def _condition(table: Taken, scene: Scene) -> Condition:
     c = Condition(
         moved=table.one_of("moved", scene.handle_names, ""),
         by=table.number("by", 1e-6, FARTHEST, 0.0),
+        way=table.one_of("way", WAYS, ""),
         event=table.one_of("event", EVENTS, ""),
         or_event=table.one_of("or_event", EVENTS, ""),
         view=table.one_of("view", list(VIEWS), ""),
@@ -235,6 +237,7 @@ def _condition(table: Taken, scene: Scene) -> Condition:
         )
     for extra, of, there in (
         ("by", "moved", c.by > 0.0),
+        ("way", "moved", bool(c.way)),
         ("or_event", "event", bool(c.or_event)),
         ("below", "setting", math.isfinite(c.below)),
     ):

@@ -46,6 +46,10 @@ ON_PAGES = {
     Action.LOOK_RIGHT: Action.RIGHT,
     Action.LOOK_UP: Action.UP,
     Action.LOOK_DOWN: Action.DOWN,
+    Action.FINE_LEFT: Action.LEFT,
+    Action.FINE_RIGHT: Action.RIGHT,
+    Action.FINE_UP: Action.UP,
+    Action.FINE_DOWN: Action.DOWN,
 }
 
 

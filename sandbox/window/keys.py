@@ -45,6 +45,10 @@ class Action(enum.Enum):
     RIGHT = enum.auto()
     UP = enum.auto()
     DOWN = enum.auto()
+    FINE_LEFT = enum.auto()
+    FINE_RIGHT = enum.auto()
+    FINE_UP = enum.auto()
+    FINE_DOWN = enum.auto()
     FOLD = enum.auto()
     BRUSH = enum.auto()
     NEXT_CONTACT = enum.auto()
@@ -126,13 +130,19 @@ _KEYS = {
 }
 
 _WITH_SHIFT = {
+    pygame.K_LEFT: Action.FINE_LEFT,
+    pygame.K_RIGHT: Action.FINE_RIGHT,
+    pygame.K_UP: Action.FINE_UP,
+    pygame.K_DOWN: Action.FINE_DOWN,
+}
+
+# With Ctrl.
+_LOOKS = {
     pygame.K_LEFT: Action.LOOK_LEFT,
     pygame.K_RIGHT: Action.LOOK_RIGHT,
     pygame.K_UP: Action.LOOK_UP,
     pygame.K_DOWN: Action.LOOK_DOWN,
 }
-
-# With Ctrl.
 _COMMANDS = {"z": Action.UNDO, "y": Action.REDO, "s": Action.SAVE}
 _SIZES = {
     pygame.K_PLUS: Action.LARGER,
@@ -149,8 +159,9 @@ def action_of(event: pygame.event.Event) -> Action | None:
     if _asks_for_the_screen(event):
         return Action.FULLSCREEN
     mod, letter = getattr(event, "mod", 0), letter_of(event)
-    if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and event.key in _SIZES:
-        return _SIZES[event.key]
+    commands = {**_SIZES, **_LOOKS}
+    if mod & (pygame.KMOD_CTRL | pygame.KMOD_META) and event.key in commands:
+        return commands[event.key]
     if mod & pygame.KMOD_SHIFT and event.key in _WITH_SHIFT:
         return _WITH_SHIFT[event.key]
     if event.key in _KEYS:

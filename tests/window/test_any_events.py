@@ -37,7 +37,7 @@ def own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 def some_key(chance: random.Random, desk: Desk) -> None:
     if chance.random() < 0.5:
-        mod = chance.choice((0, 0, pygame.KMOD_LSHIFT))
+        mod = chance.choice((0, 0, pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL))
         desk.key(chance.choice(SPECIAL), mod=mod)
     else:
         sign = chance.choice(SIGNS)

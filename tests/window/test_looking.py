@@ -78,7 +78,7 @@ def test_keys_look_and_letters_have_keys_of_their_own(desk: Desk) -> None:
     assert sight(desk).nearer == pytest.approx(2.25)
     desk.app.tick()
     before = shown(desk)
-    desk.key(pygame.K_RIGHT, mod=pygame.KMOD_LSHIFT)
+    desk.key(pygame.K_RIGHT, mod=pygame.KMOD_LCTRL)
     desk.app.tick()
     assert shown(desk)[0] > before[0]
     desk.key(pygame.K_MINUS, "-")

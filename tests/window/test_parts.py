@@ -11,6 +11,7 @@ import numpy as np
 import pygame
 import pytest
 
+from sandbox.draw.camera import ALL
 from sandbox.draw.timeline import Bar
 from sandbox.draw.widgets.controls import Fact, TextField
 from sandbox.session.commands import (
@@ -304,6 +305,17 @@ def test_arrow_keys_pull_the_handle(desk: Desk) -> None:
     desk.key(pygame.K_TAB)  # shows where the keyboard is
     desk.key(pygame.K_TAB)  # and leaves
     desk.until(lambda: sent(desk)[-1] == Release("intruder"))
+
+
+def test_small_steps_with_shift(desk: Desk) -> None:
+    """What a lesson asks for, such as 0.15 R, can be hit: at once, and added up after pauses."""
+    x = desk.app.stage.picture.panes()[0][0].handles[0].x
+    for _ in range(15):
+        desk.key(pygame.K_RIGHT, mod=pygame.KMOD_LSHIFT)
+    desk.until(lambda: desk.session._place[0] == pytest.approx(x + 0.15, abs=1e-9))
+    desk.key(pygame.K_LEFT)
+    desk.until(lambda: desk.session._place[0] == pytest.approx(x - 0.1, abs=1e-9))
+    assert desk.app.stage.renderer.sight == ALL  # that looks nowhere else
 
 
 def test_a_handle_that_went_with_its_scene_is_not_let_go(desk: Desk) -> None:

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from sandbox.draw.numbers import number
 from sandbox.draw.widgets.scale import shown
 from sandbox.session.frame import Frame, HandleState
 from sandbox.window.access.node import Do, Node, Number, changes
-from sandbox.window.canvas.arrows import STEP, Arrows
+from sandbox.window.canvas.arrows import FINE_STEP, STEP, Arrows
 from sandbox.window.focus import CANVAS
 from sandbox.words import words
 
 Go = Callable[[str], None]
+
+
+def hand_keys() -> str:
+    """What pulls a handle, and how far."""
+    return words.HAND_KEYS.format(step=number(STEP, 2), fine=number(FINE_STEP, 2))
 
 
 def nodes_of_handle(handle: HandleState, frame: Frame, arrows: Arrows, go: Go) -> Iterator[Node]:
@@ -56,5 +62,5 @@ def _along(
     does: dict[str, Do] = {"FOCUS": lambda _: go(f"{CANVAS}/{handle.name}")}
     does |= changes(number, lead_to)
     does |= {"INCREMENT": lambda _: lead(STEP), "DECREMENT": lambda _: lead(-STEP)}
-    about = f"[R] {words.HAND_KEYS}"
+    about = f"[R] {hand_keys()}"
     return Node(name, "SLIDER", title, f"{shown(place)} R", about, number, does=does)

@@ -15,7 +15,7 @@ from sandbox.draw.widgets.scale import shown
 from sandbox.session.frame import Frame
 from sandbox.window.access import explore
 from sandbox.window.access.controls import chosen, nodes_of
-from sandbox.window.access.handles import nodes_of_handle
+from sandbox.window.access.handles import hand_keys, nodes_of_handle
 from sandbox.window.access.node import ROOT, Do, Node, Number, button, changes, edges, label
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.arrows import Arrows
@@ -219,7 +219,7 @@ class Tree:
         for handle in frame.handles:
             nodes += nodes_of_handle(handle, frame, self._parts.arrows, self._go)
         places = stage.picture.panes()
-        about = words.HAND_KEYS if frame.handles else ""
+        about = hand_keys() if frame.handles else ""
         self._group(CANVAS, "CANVAS", title, nodes, about=about, rect=edges(places[0][2]))
 
     def _time(self) -> None:

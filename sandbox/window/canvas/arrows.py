@@ -1,4 +1,7 @@
-"""The hand by keyboard: with the canvas in focus the arrow keys pull a handle; Tab goes from handle to handle."""
+"""The hand by keyboard: with the canvas in focus the arrow keys pull a handle, with Shift by small steps.
+
+Tab goes from handle to handle.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +20,21 @@ from sandbox.window.parts import Silent
 from sandbox.window.stage import Stage
 
 STEP = 0.25  # of the hand, a press [R]
+FINE_STEP = (
+    0.01  # and with Shift: whatever a lesson asks for, such as 0.15 R, is so many of them [R]
+)
+FINE = FINE_STEP / STEP
 LEAD = 2.0  # the hand is never farther ahead of the body [R]
 PAUSE = 1.0  # a press after such a pause begins a gesture of its own, to be undone by itself [s]
-WAYS = {
+WAYS = {  # in steps
     Action.LEFT: (-1.0, 0.0),
     Action.RIGHT: (1.0, 0.0),
     Action.UP: (0.0, 1.0),
     Action.DOWN: (0.0, -1.0),
+    Action.FINE_LEFT: (-FINE, 0.0),
+    Action.FINE_RIGHT: (FINE, 0.0),
+    Action.FINE_UP: (0.0, FINE),
+    Action.FINE_DOWN: (0.0, -FINE),
 }
 
 
