@@ -23,11 +23,13 @@ def beside(wanted: Sequence[str]) -> Iterator[None]:
         yield
     except BaseException:
         if helper is not None:
-            helper.kill()
-            helper.wait()
+            with helper:  # its pipe as well
+                helper.kill()
         raise
     if helper is not None:
         helper.wait()  # whatever came of it: what it did not compile is compiled here
+        with helper:
+            pass
 
 
 def start(wanted: Sequence[str], *, idle: bool = False) -> subprocess.Popen[bytes] | None:

@@ -16,6 +16,7 @@ from typing import Any, NoReturn, TypeVar
 from core.errors import InputError, did_you_mean, reason_of
 from core.files import clear, followed, try_writing
 from sandbox.files.pipes import hold
+from scenes.parameter import shown
 
 SMALLEST_SIZE = (320, 240)
 LARGEST_SIZE = (7680, 4320)
@@ -113,7 +114,7 @@ def whole_number(low: int, high: int) -> Callable[[str], int]:
         try:
             value = int(text)
         except ValueError:
-            raise InputError(f"{text!r} is not a whole number") from None
+            raise InputError(f"{shown(text)} is no whole number from {low} to {high}") from None
         if not low <= value <= high:
             raise InputError(f"{value} is out of range: use {low} to {high}")
         return value

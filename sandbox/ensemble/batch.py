@@ -43,6 +43,7 @@ class Batch(Generic[Asked, Found]):
     prepare: Callable[[], object] | None = None  # called by a worker before the rest begins
     label: Callable[[Asked], str] = lambda _: "runs"  # of the run that was told last
     unit: str = "run"
+    silent: bool = False  # no bar: it is shown elsewhere how far it is
 
 
 def carry_out_all(
@@ -61,7 +62,8 @@ def carry_out_all(
         return
     under_way: dict[Future[Found], Asked] = {}
     total = found_before + len(batch.runs)
-    with tqdm(total=total, initial=found_before, unit=batch.unit, **bar_options()) as bar:
+    look = {**bar_options(), "unit": batch.unit, "disable": batch.silent}
+    with tqdm(total=total, initial=found_before, **look) as bar:
 
         def tell(run: Asked, line: str | None) -> None:
             bar.set_description_str(batch.label(run), refresh=False)

@@ -22,6 +22,9 @@ from core.packing import UNREADABLE
 LARGEST = 1 << 28  # bytes, of a file and of all that it unpacks to
 LARGEST_TEXT = 1 << 25  # bytes
 MOST_PARTS = 500
+_DIGITS = (
+    "Exceeds the limit"  # how Python begins where a whole number has more digits than it reads
+)
 ZIP = b"PK\x03\x04"  # how such a file begins
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 _READ_HEADER = {
@@ -71,7 +74,7 @@ def unpack(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
                 else:
                     raise InputError(f"it has a part {entry.filename[:80]!r}, which nobody knows")
     except UNREADABLE as error:
-        raise InputError(f"damaged, or no file of this program ({_reason(error)})") from None
+        raise InputError(f"damaged, or no file of this program ({why_unread(error)})") from None
     return texts, arrays
 
 
@@ -83,7 +86,7 @@ def first_text(content: io.BufferedReader, name: str) -> Any:
             _check([entry])
             return data_of(archive.read(entry))
     except UNREADABLE as error:
-        raise InputError(f"damaged, or no file of this program ({_reason(error)})") from None
+        raise InputError(f"damaged, or no file of this program ({why_unread(error)})") from None
 
 
 def data_of(text: bytes) -> Any:
@@ -93,7 +96,7 @@ def data_of(text: bytes) -> Any:
             text.decode("utf-8-sig"), parse_constant=_no_number, object_pairs_hook=_each_once
         )
     except (ValueError, RecursionError) as error:
-        raise InputError(f"its text cannot be read ({_reason(error)})") from None
+        raise InputError(f"its text cannot be read ({why_unread(error)})") from None
 
 
 def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -140,5 +143,8 @@ def _array(content: bytes, name: str) -> NDArray[Any]:
     return flat.reshape(shape, order="F" if fortran else "C").copy()
 
 
-def _reason(error: BaseException) -> str:
+def why_unread(error: BaseException) -> str:
+    """In one line, why somebody's text or archive cannot be read; what Python says about itself in words of ours."""
+    if str(error).startswith(_DIGITS):
+        return "a whole number in it has thousands of digits"
     return " ".join(str(error).split())[:200] or type(error).__name__

@@ -15,7 +15,7 @@ from typing import Any, TypeGuard
 
 from core.errors import InputError
 from core.files import atomic_write
-from sandbox.files.archive import data_of
+from sandbox.files.archive import data_of, why_unread
 from sandbox.files.older_pairs import parse_pair
 from sandbox.files.scene_file import content_of, parse_scene
 from sandbox.session.beginning import SceneFile
@@ -184,8 +184,7 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
         OSError,
         ValueError,
     ) as error:  # also for bytes that are no text, and names that are none
-        reason = " ".join(str(error).split())
-        raise InputError(f"{str(path)!r}: cannot be read ({reason})") from None
+        raise InputError(f"{str(path)!r}: cannot be read ({why_unread(error)})") from None
 
 
 def _entry(path: Path, number: int, line: str) -> dict[str, Any]:

@@ -13,10 +13,11 @@ from typing import Any, BinaryIO
 
 from core.errors import InputError
 from core.packing import Packing
-from sandbox.files.archive import ZIP, unpack
+from sandbox.files.archive import ZIP, unpack, why_unread
 from sandbox.files.scene_checks import check_scene, check_state, places_of, walls_of
 from sandbox.session.beginning import SceneFile, State
 from scenes import registry
+from scenes.parameter import shown
 
 FORMAT = "auxetic-sandbox scene"
 VERSION = 1
@@ -84,8 +85,7 @@ def _table(text: bytes) -> Mapping[str, Any]:
     try:
         return tomllib.loads(text.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"not a readable scene file ({reason})") from None
+        raise InputError(f"not a readable scene file ({why_unread(error)})") from None
 
 
 def _head(name: str, text: bytes) -> Mapping[str, Any]:
@@ -101,11 +101,11 @@ def _head(name: str, text: bytes) -> Mapping[str, Any]:
     version = head.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise InputError(
-            f"{name}: version {version!r} of a text, this program reads {VERSION}; update the program"
+            f"{name}: version {shown(version)} of a text, this program reads {VERSION}; update the program"
         )
     for key in head:
         if key not in _KEYS:
-            raise InputError(f"{name}: unknown key {key!r}")
+            raise InputError(f"{name}: unknown key {shown(key)}")
     for key, kind in _KEYS.items():
         if key in ("bodies", "walls") and key not in head:
             continue

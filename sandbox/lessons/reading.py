@@ -16,6 +16,7 @@ from typing import Any, get_args
 
 from core.errors import InputError
 from core.files import is_special
+from sandbox.files.archive import why_unread
 from sandbox.lessons.lesson import (
     DEEDS,
     SECTIONS,
@@ -111,7 +112,7 @@ def _table(content: bytes) -> dict[str, Any]:
     except RecursionError:
         raise InputError("tables within tables within tables; make it simpler") from None
     except ValueError as error:  # TOMLDecodeError, and numbers of too many digits
-        raise InputError(f"no TOML: {error}") from None
+        raise InputError(f"no TOML: {why_unread(error)}") from None
 
 
 def _lesson(name: str, table: Mapping[str, Any]) -> Lesson:

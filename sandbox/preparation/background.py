@@ -30,5 +30,5 @@ class Background:
     def close(self) -> None:
         """End it. What it had finished is kept."""
         if self._process is not None:
-            self._process.kill()
-            self._process.wait()
+            with self._process:  # its pipe as well
+                self._process.kill()

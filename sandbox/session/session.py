@@ -127,12 +127,14 @@ class Session:
             )
             report(COMPILING, PACKED)
         compile_increments(**asdict(terms))
+        report(COMPILING, PACKED)
         kept = None if asked.file is None else put_into(setup, asked)
         bodies = keep_bodies(setup.world)
         friction = None if setup.friction is None else setup.friction.copy()
         start = Start(setup.packing.copy(), friction, setup, bodies, asked, kept)
-        self._start, self._run = start, _first_run(asked, setup, kept)
-        report("ready", 1.0)
+        run = _first_run(asked, setup, kept)
+        report("ready", 1.0)  # the last that can break it off: all is as it was until here
+        self._start, self._run = start, run
 
     # Commands.
 
@@ -245,6 +247,7 @@ class Session:
             report = self._progress or _silent
             report(COMPILING, 0.0)
             compile_kernels(**asdict(terms))
+            report(COMPILING, 1.0)  # who does not want it any more says so here
         self.run.adjust(settings, frozenset({name}))
 
     def _rebuild(self, name: str, value: object) -> None:

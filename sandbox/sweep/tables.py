@@ -23,6 +23,7 @@ from core.files import is_special
 from sandbox import __version__
 from sandbox.ensemble.machine import machine
 from sandbox.files import cells
+from sandbox.files.archive import why_unread
 from sandbox.files.folder import prepare_folder, write_text
 from sandbox.files.lines import append_lines
 from sandbox.interrupts import deferred
@@ -59,8 +60,10 @@ def read_request(folder: Path) -> Request:
         raise InputError(f"{path}: {error}") from None
     except OSError as error:
         raise InputError(f"{path}: {reason_of(error)}") from None
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise InputError(f"{path}: damaged ({error!r})") from None
+    except KeyError as error:
+        raise InputError(f"{path}: damaged ({error} is missing)") from None
+    except (ValueError, TypeError, AttributeError, RecursionError) as error:
+        raise InputError(f"{path}: damaged ({why_unread(error)})") from None
     if key != request.key():
         raise InputError(
             f"{folder} was begun by version {made}, whose scenes were others: begin a new folder with version {__version__}"

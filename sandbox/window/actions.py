@@ -94,6 +94,8 @@ class Actions:
         elif action is Action.HELP or (action is Action.BACK and self.stage.show_help):
             self.stage.show_help = not self.stage.show_help
             self.pages.help.scroll = 0
+        elif action is Action.MENU and (self.stage.show_help or self.stage.show_explore):
+            self.pages.open_menu()
         elif (
             self.stage.show_explore and not self.stage.show_help and self.pages.explore.act(action)
         ):
@@ -123,7 +125,9 @@ class Actions:
             self._on_run(action)
 
     def _in_menu(self, action: Action) -> None:
-        if action is Action.BACK:
+        if action is Action.BACK and self.stage.notices.latest and not self.stage.splash:
+            self.stage.notices.forget()
+        elif action is Action.BACK:
             self.stage.running = False
         elif action is Action.MENU:
             if self.stage.panes.exists:
@@ -202,7 +206,8 @@ class Actions:
         self.stage.mouse.forget()
         if not self.stage.panes.cancel():
             self.pages.open_menu()
-        self.stage.toast(words.CANCELLED)
+        if not any(seen.ending for seen in self.stage.panes.snapshots):  # else the picture says so
+            self.stage.toast(words.CANCELLED)
 
     def _switch_chains(self) -> None:
         if self.stage.renderer.view.only_chains:

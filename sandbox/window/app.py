@@ -245,7 +245,7 @@ class App:
         begun = time.perf_counter()
         preparing = snapshot.phase == "building" and snapshot.frame is None
         page = stage.show_menu or stage.show_explore
-        self._splash = not self._warmup.ready or (preparing and not page)
+        self._splash = stage.splash = not self._warmup.ready or (preparing and not page)
         if not self._splash:
             self._background.begin()
         if self._splash:
@@ -253,7 +253,9 @@ class App:
                 renderer.surface,
                 renderer.theme,
                 renderer.type,
-                text=_sentence(words.say(snapshot.text) or words.SPLASH_STEP),
+                text=words.SPLASH_MENU
+                if page
+                else _sentence(words.say(snapshot.text) or words.SPLASH_STEP),
                 fraction=snapshot.fraction,
                 seconds=0.0 if stage.still else now - self._begun,
             )

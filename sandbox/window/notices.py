@@ -27,6 +27,10 @@ class Notices:
         self.said.append(text)
         self.count += 1
 
+    def forget(self) -> None:
+        """Who has read it, or what it was about, is gone."""
+        self.latest = ""
+
     def tick(self, now: float) -> bool:
         """True when the notice has been there long enough."""
         if not self.latest or now <= self._until:

@@ -74,7 +74,9 @@ class Pages:
         stage = self.stage
         stage.mouse.release(stage.send)
         stage.panes.hold()
-        stage.show_menu, stage.show_help = True, False
+        if stage.panes.exists:
+            stage.notices.forget()  # of what is left behind
+        stage.show_menu, stage.show_help, stage.show_explore = True, False, False
         self._look_for_leftovers()
         self.menu.open(stage.panes.scene if stage.panes.exists else "")
         stage.redraw(True)

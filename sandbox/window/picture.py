@@ -103,6 +103,8 @@ def progress_of(snapshot: Snapshot) -> str:
     else:
         return ""
     text = text[:1].upper() + text[1:]
+    if snapshot.ending:
+        return words.ENDING.format(text=text)
     if math.isfinite(snapshot.fraction):
         text = words.BUILDING.format(text=text, percent=100.0 * snapshot.fraction)
     return text

@@ -41,6 +41,7 @@ class Stage:
         self.show_menu = False
         self.show_help = False
         self.show_explore = False
+        self.splash = True  # is that what the window shows, whatever page is open?
         self.over = pygame.Rect(0, 0, 0, 0)  # what a panel covers that lies over the canvas
         self.dirty = True  # is there something new to draw?
         self.parts: list[Part] = []  # while a scene runs they see events first, in this order

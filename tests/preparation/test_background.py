@@ -21,7 +21,7 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
         if not wanted:
             return None
         program = "import time; time.sleep(60.0)"
-        processes.append(subprocess.Popen([sys.executable, "-c", program]))
+        processes.append(subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.PIPE))
         return processes[-1]
 
     monkeypatch.setattr(background, "start", start)
@@ -41,6 +41,8 @@ def test_it_begins_once_and_ends_with_the_window(
     assert process.poll() is None
     work.close()
     assert process.returncode is not None
+    assert process.stdin is not None
+    assert process.stdin.closed
 
 
 def test_where_all_is_compiled_there_is_none(

@@ -239,3 +239,46 @@ def test_a_frame_says_how_far_each_grain_is_from_balance(make: Callable[[], Sess
     inside = touching.j >= 0
     assert np.array_equal(touching.x0, frame.x[touching.i])
     assert np.allclose(touching.x1[inside], frame.x[touching.j[inside]])
+
+
+@pytest.mark.parametrize(
+    "change",
+    [Change("friction", 0.3), Change("packing", "regular"), Change("seed", 7), Change("step", 0.1)],
+    ids=lambda change: change.name,
+)
+def test_wherever_a_change_is_broken_off_all_is_as_before(
+    change: Change, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each time that it tells how far it is somebody may say that it is not wanted any more."""
+    tells, least = 0, math.inf
+
+    def tell(text: str, share: float) -> None:
+        nonlocal tells
+        tells += 1
+        if tells > least:
+            raise InputError("not wanted")
+
+    session = Session("intruder", "mixed", 1, {**SMALL, "friction": 0.0})
+    session.build(tell)
+    run(session, 2)
+    compiles: list[int] = []
+    monkeypatch.setattr(
+        "sandbox.session.session.compile_kernels", lambda **_: compiles.append(tells)
+    )
+
+    def state() -> tuple[object, ...]:
+        return session.state_hash(), dict(session.settings), session.packing, session.seed
+
+    before, allowed = state(), 0
+    while True:
+        tells, least = 0, allowed
+        session.submit(change)
+        session.settle()
+        if session.refusals[0] == allowed:  # it came to its end
+            break
+        assert state() == before
+        allowed += 1
+    assert state() != before
+    assert allowed >= (1 if change.name != "step" else 0)
+    if compiles:  # it can be broken off when that is done
+        assert tells > compiles[-1]

@@ -239,3 +239,31 @@ def test_every_parameter_has_a_range_that_may_be(name: str) -> None:
             values = Side.around(parameter).values()
             assert len(values) > 1
             assert [parameter.check(value) for value in values] == list(values)
+
+
+def test_the_terminal_hears_nothing_of_it(desk: Desk, capfd: pytest.CaptureFixture[str]) -> None:
+    page = fill(desk)
+    assert page.explorer.progress.done
+    page.show_ends_or_shares()
+    desk.until(lambda: not page.explorer.progress.at_work)
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("run", [False, True], ids=["menu", "run"])
+@pytest.mark.parametrize("over", ["", "help"])
+def test_m_leads_from_every_page_to_the_menu(desk: Desk, run: bool, over: str) -> None:
+    if run:
+        desk.key(pygame.K_ESCAPE)
+        desk.start("gravity_hopper")
+        desk.key(pygame.K_x)
+    assert desk.app.stage.show_explore
+    if over:
+        desk.key(pygame.K_h)
+    desk.key(pygame.K_m)
+    stage = desk.app.stage
+    assert (stage.show_menu, stage.show_help, stage.show_explore) == (True, False, False)
+    assert desk.paused() == run
+    if run:
+        desk.key(pygame.K_m)
+        assert desk.page() == "run"
+        assert not desk.paused()

@@ -6,22 +6,26 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pygame
 import pytest
 
 from core.errors import InputError
+from sandbox.draw.warmup import Warmup
 from sandbox.files.log_file import read_log
 from sandbox.files.scene_file import write_scene
-from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Release, Reset
-from sandbox.window import display
+from sandbox.session.commands import Change, Command, Grab, Move, Protocol, Recall, Release, Reset
+from sandbox.window import app, display
 from sandbox.window.display import Looks
+from sandbox.window.picture import progress_of
 from sandbox.words import language, words
 from scenes import registry
 from tests.session.test_editing import built
+from tests.window import desk as desks
 from tests.window.desk import Desk
+from tests.window.fake_session import FakeSession
 
 
 @pytest.fixture
@@ -304,6 +308,89 @@ def test_escape_leads_to_the_menu_then_out(running: Desk) -> None:
     assert running.page() == "menu"
     running.key(pygame.K_ESCAPE)
     assert running.page() == "closed"
+
+
+def test_a_notice_goes_with_what_it_was_about(running: Desk) -> None:
+    """What is carried is put down: by a click, by Escape, by a page that opens."""
+    for put_down in (
+        lambda: running.click(running.handle_place()),
+        lambda: running.key(pygame.K_ESCAPE),
+        lambda: running.key(pygame.K_m),
+    ):
+        running.point(running.handle_place())
+        running.click(running.handle_place())
+        assert running.app.stage.notices.latest == words.CARRYING
+        put_down()
+        running.app.tick()
+        assert running.app.stage.notices.latest == ""
+    assert running.page() == "menu"
+
+
+def test_escape_in_the_menu_closes_what_is_said_first(running: Desk) -> None:
+    running.key(pygame.K_m)
+    running.app.stage.toast("something")
+    running.key(pygame.K_ESCAPE)
+    assert running.page() == "menu"
+    assert running.app.stage.notices.latest == ""
+    running.key(pygame.K_ESCAPE)
+    assert running.page() == "closed"
+
+
+@pytest.mark.parametrize("code", ["en", "de", "uk"])
+def test_escape_is_answered_where_the_menu_cannot_be_drawn_yet(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    """At a first start what draws is compiled as well. It is said at once what is waited for; the next closes the window."""
+    shown: list[str] = []
+    monkeypatch.setattr(app, "draw_splash", lambda *_, text, **__: shown.append(text))
+    monkeypatch.setattr(Warmup, "ready", property(lambda self: False))
+    language.use(code)
+    desk.app.stage.start("intruder")
+    desk.app.tick()
+    before = shown[-1]
+    desk.key(pygame.K_ESCAPE)
+    assert shown[-1] == words.SPLASH_MENU != before
+    desk.key(pygame.K_ESCAPE)
+    assert desk.page() == "closed"
+
+
+class Compiling(FakeSession):
+    """A change for which something is compiled: reported before and after, as a session does."""
+
+    def build(self, progress: Callable[[str, float], None] | None = None) -> None:
+        self.report = progress or (lambda text, share: None)
+        super().build(progress)
+
+    def _apply(self, command: Command) -> None:
+        try:
+            if isinstance(command, Change):
+                self.report("compiling", 0.0)
+                assert self.block_change is not None
+                self.block_change.wait()
+                self.report("compiling", 1.0)
+            super()._apply(command)
+        except InputError as error:
+            self.refusal = str(error)
+
+
+def test_escape_during_a_change_says_when_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(desks, "FakeSession", Compiling)
+    desk = Desk()
+    desk.start()
+    compiled = desk.session.block_change = threading.Event()
+    desk.app.stage.send(Change("friction", 0.3))
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase == "building")
+    desk.key(pygame.K_ESCAPE)
+    assert desk.page() == "run"
+    said = progress_of(desk.app.stage.panes.snapshot)
+    assert said == words.ENDING.format(text="Compiling")
+    assert words.CANCELLED not in desk.app.stage.notices.said  # it is not yet
+    compiled.set()
+    desk.until(lambda: desk.app.stage.panes.snapshot.phase == "running")
+    assert not any(isinstance(command, Change) for command in desk.session.commands)
+    assert "as it was" in desk.session.refusal  # type: ignore[attr-defined]
+    assert not desk.app.stage.panes.snapshot.ending
+    desk.app.close()
 
 
 def test_failure_is_shown_and_reset_builds_anew(running: Desk) -> None:

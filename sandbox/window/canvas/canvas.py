@@ -57,6 +57,15 @@ class Canvas(Silent):
             stage.has_begun()
         return True
 
+    def tick(self, now: float) -> bool:
+        """What is put down is carried no more, and it is no longer said."""
+        del now
+        notices = self.stage.notices
+        stale = notices.latest == words.CARRYING and not self.stage.mouse.carrying
+        if stale:
+            notices.forget()
+        return stale
+
     def _put_down(self) -> bool:
         """What is carried; False if nothing is."""
         mouse = self.stage.mouse

@@ -133,7 +133,7 @@ class Explorer:
                 gate.open(pool)
                 # A run that fails leaves its cell with fewer; it is tried again when the folder is gone on with.
                 runs = [*unseen(), *missing]
-                batch = Batch(carry_out_gently, runs, done, lambda _job, _reason: None)
+                batch = Batch(carry_out_gently, runs, done, lambda _job, _reason: None, silent=True)
                 carry_out_all(batch, gate, jobs, len(tables.runs))
                 tell()
                 carry_out_all(replace(batch, runs=unseen()), gate, jobs)

@@ -60,6 +60,7 @@ class ExplorePage:
         """Show it for a scene as it is set; what was asked of that scene before stays."""
         self.stage.mouse.release(self.stage.send)
         self.stage.panes.hold()
+        self.stage.notices.forget()
         self.stage.show_explore = True
         self.stage.redraw(True)
         known = registry.get(scene)

@@ -75,6 +75,7 @@ class Snapshot:
     error: str = ""  # plain words, when failed
     serial: int = 0  # counts publications
     made: Made | None = None  # what there is to be kept in a file
+    ending: bool = False  # the build is broken off as soon as what is being compiled is compiled
 
 
 class _Stopped(Exception):
@@ -112,7 +113,8 @@ class SolverThread:
     @property
     def snapshot(self) -> Snapshot:
         """The latest state."""
-        return self._snapshot
+        seen = self._snapshot
+        return replace(seen, ending=True) if self._cancel and seen.phase == "building" else seen
 
     def cancel(self) -> None:
         """Break a build off: the first ends the thread, a later one leaves everything as it was."""
