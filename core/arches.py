@@ -8,6 +8,7 @@ encloses the least area over the line through the lips.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,11 +45,7 @@ def arch(
     x, y = packing.x, packing.y
     carrying = pairs.normal_force > weak
     i, j = pairs.i[carrying], pairs.j[carrying]
-    costs = _costs(x[i], y[i], x[j], y[j], base)
-    links: dict[int, list[tuple[int, float]]] = {}
-    for first, second, cost in zip(i.tolist(), j.tolist(), costs.tolist(), strict=True):
-        links.setdefault(first, []).append((second, cost))
-        links.setdefault(second, []).append((first, cost))
+    links = _Links(i, j, _costs(x[i], y[i], x[j], y[j], base), len(packing))
     resting = (side != 0) & (bodies.normal_force > weak)
     i = bodies.grain[resting]
     costs = _costs(x[i], y[i], bodies.x[resting], bodies.y[resting], base)
@@ -66,21 +63,36 @@ def _costs(x0: Floats, y0: Floats, x1: Floats, y1: Floats, base: float) -> Float
     return np.abs(x1 - x0) * height + LENGTH_COST * np.hypot(x1 - x0, y1 - y0)
 
 
-def _cheapest_chain(
-    links: dict[int, list[tuple[int, float]]], start: dict[int, float], end: dict[int, float]
-) -> list[int]:
+class _Links:
+    """Who touches whom (L,) of N grains, and what that costs."""
+
+    def __init__(self, i: Indices, j: Indices, costs: Floats, grains: int) -> None:
+        grain, other = np.array([i, j]).T.ravel(), np.array([j, i]).T.ravel()
+        order = np.argsort(grain, kind="stable")
+        self._other, self._cost = other[order], np.repeat(costs, 2)[order]
+        self._first = np.append(0, np.cumsum(np.bincount(grain, minlength=grains)))
+
+    def of(self, grain: int) -> Iterator[tuple[int, float]]:
+        """Those that touch a grain, each with the cost of going there."""
+        here = slice(self._first[grain], self._first[grain + 1])
+        return zip(self._other[here].tolist(), self._cost[here].tolist(), strict=True)
+
+
+def _cheapest_chain(links: _Links, start: dict[int, float], end: dict[int, float]) -> list[int]:
     """Dijkstra's algorithm from any of ``start`` to any of ``end``, each with the price of beginning or ending there."""
     best = dict(start)
     came: dict[int, int] = {}
     queue = [(cost, grain) for grain, cost in start.items()]
     heapq.heapify(queue)
     done: set[int] = set()
-    while queue:
+    cheapest = np.inf  # chain so far: what costs more leads to none that is cheaper
+    while queue and queue[0][0] <= cheapest:
         cost, grain = heapq.heappop(queue)
         if grain in done:
             continue
         done.add(grain)
-        for other, link in links.get(grain, ()):
+        cheapest = min(cheapest, cost + end.get(grain, np.inf))
+        for other, link in links.of(grain):
             if cost + link < best.get(other, np.inf):
                 best[other] = cost + link
                 came[other] = grain

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
+from core.candidates import BODY, GRAIN
 from core.errors import InputError
-from core.frictional_contacts import BODY, GRAIN, Origin
+from core.frictional_contacts import Origin
 from core.packing import Packing
 
 Indices = NDArray[np.int64]

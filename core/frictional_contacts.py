@@ -12,26 +12,30 @@ A contact that goes over from an edge to the vertex at its end, or back, is the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats, aligned_zeros
+from core.candidates import (
+    count_listed,
+    find_corners,
+    list_candidates,
+    recall,
+    round_corners,
+)
 from core.fire import Minimizer
-from core.marks import lay_out, measure, slips
-from core.neighbors import SLOT_PADDING
+from core.marks import count_beyond, lay_out, measure, slips, tangential_forces
 from core.observables import GrainContacts, RigidContacts
-from core.packing import MAX_LABEL, PeriodicBox
-from core.rigid_contacts import EDGE, VERTEX, RigidTerms
-from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms, prepare_friction
+from core.packing import PeriodicBox
+from core.rigid_contacts import RigidTerms
+from core.slip import FrictionTerms, prepare_friction
 
 Indices = NDArray[np.int64]
 Box = tuple[float, ...]
 
-BODY = MAX_LABEL  # keys of primitives begin here; labels of grains stay below
-GRAIN = 2 * MAX_LABEL
 BEYOND = 1.05  # times the Coulomb cap: a contact that pulls harder counts as beyond the cone
-_SAME_POINT = 1e-9  # [R]
 
 
 @dataclass(frozen=True)
@@ -70,26 +74,24 @@ class FrictionForces:
         """
         if not len(self.i):
             return 0.0
-        many = 1 + max(int(v.max(initial=0)) for v in (self.i, self.j, pairs.j, bodies.primitive))
-        pressed = np.concatenate(
-            [
-                np.minimum(pairs.i, pairs.j) * many + np.maximum(pairs.i, pairs.j),
-                (-1 - bodies.grain) * many - bodies.primitive,
-            ]
+        highest = max(
+            int(v.max(initial=-1)) for v in (self.i, self.j, pairs.i, pairs.j, bodies.grain)
         )
-        normal = np.concatenate([pairs.normal_force, bodies.normal_force])
-        pulling = np.where(
-            self.j >= 0,
-            np.minimum(self.i, self.j) * many + np.maximum(self.i, self.j),
-            (-1 - self.i) * many - self.primitive,
+        beyond = count_beyond(
+            BEYOND * coefficient,
+            np.array([self.i, self.j, self.primitive]),
+            self.fx,
+            self.fy,
+            pairs.i,
+            pairs.j,
+            pairs.normal_force,
+            bodies.grain,
+            bodies.primitive,
+            bodies.normal_force,
+            np.empty(2 * (highest + 1), dtype=np.int64),
+            np.empty(len(pairs.i) + len(bodies.grain), dtype=np.int64),
         )
-        order = np.argsort(pressed, kind="stable")
-        place = np.minimum(np.searchsorted(pressed, pulling, sorter=order), len(pressed) - 1)
-        at = order[place] if len(pressed) else np.zeros(0, dtype=np.int64)
-        known = np.zeros(len(pulling))
-        if len(at):
-            known = np.where(pressed[at] == pulling, normal[at], 0.0)
-        return float(np.mean(np.hypot(self.fx, self.fy) > BEYOND * coefficient * known))
+        return float(beyond) / len(self.i)
 
     def reactions(self, owner: Indices, placement: Floats) -> Floats:
         """Force and torque on each body (B, 3) [k R, k R²]; arguments as for ``observables.reactions``."""
@@ -120,7 +122,8 @@ class FrictionalContacts:
         self._keys, self._slips = origin.keys, origin.slips
         self._turn = origin.turn
         self._primitives = np.zeros((0, 8)) if rigid is None else rigid.primitives
-        self._corners = _corners(self._primitives)
+        self._corners = np.empty((len(self._primitives), 2), dtype=np.int64)
+        find_corners(self._primitives, self._corners)
         self._listed: Indices | None = None  # keys of the pairs, first those of two grains
         count = len(origin.label)
         self._at_i = self._at_j = np.zeros(0, dtype=np.uint32)
@@ -148,74 +151,74 @@ class FrictionalContacts:
 
     def relist(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
         """Take every pair of new lists as a candidate, with its slip counted from the origin, or from here if that is past."""
-        lists = m.lists
-        pairs = int(lists.width.sum())
-        at_i, at_j = lists.place[lists.first[:pairs]], lists.place[lists.second[:pairs]]
+        pairs, entries = count_listed(m.lists.width)
         grain = primitive = np.zeros(0, dtype=np.int64)
         if rigid is not None:
             used = int(rigid.used[0])
             grain, primitive = rigid.grain[:used], rigid.primitive[:used].copy()
-        label = self._origin.label[m.identity]
-        a, b = label[at_i], label[at_j]
-        keys = np.concatenate(
-            [np.minimum(a, b) * GRAIN + np.maximum(a, b), label[grain] * GRAIN + BODY + primitive]
+        count, many = len(self._origin.label), pairs + len(grain)
+        keys = np.empty(many, dtype=np.int64)
+        self._at_i, self._at_j = np.empty(many, dtype=np.uint32), np.empty(pairs, dtype=np.uint32)
+        self._primitive = primitive
+        list_candidates(
+            pairs,
+            m.lists,
+            m.identity,
+            self._origin.label,
+            grain,
+            primitive,
+            self._at_i,
+            self._at_j,
+            keys,
         )
         start, primitives, cell = m.state, self._primitives, box
         if self._listed is None:
-            start = np.zeros((6, len(label)))
+            start = np.zeros((6, count))
             start[:5] = self._origin.state[:, m.identity]
             primitives = self._origin.primitives
             cell = None if self._origin.box is None else self._origin.box.kernel_form()
-        self._at_i = np.concatenate([at_i, grain]).astype(np.uint32)
-        self._at_j = at_j.astype(np.uint32)
-        place = np.empty((7, len(keys)))
+        place = np.empty((7, many))
         measure(self._at_i, self._at_j, primitive, start, primitives, cell, place)
-        slip, known = self._recall(keys)
-        gap = np.maximum(place[0], 0.0)
-        self._round_corners(grain, primitive, slip[pairs:], gap[pairs:], known[pairs:])
-        self._marks = np.array([slip, gap, place[1], place[2]])
-        entries = int((-(-lists.width // SLOT_PADDING) * SLOT_PADDING).sum())
+        marks, known = np.empty((4, many)), np.empty(many, dtype=np.bool_)
+        slip, gap = marks[0], marks[1]
+        recall(keys, self._keys, self._slips, slip, known)
+        np.maximum(place[0], 0.0, out=gap)
+        marks[2:] = place[1:3]
+        room = np.empty((count, len(primitives)), dtype=np.int64)
+        round_corners(pairs, self._at_i, primitive, self._corners, room, slip, gap, known)
         slots = np.zeros((4, entries))
-        lay_out(lists, self._at_i, self._at_j, self._marks, lists.filled, slots)
+        lay_out(m.lists, self._at_i, self._at_j, marks, m.lists.filled, slots)
         self.terms = self.terms._replace(
             origin=start[2:].copy(),
             marks=slots,
             reactions=aligned_zeros(8, entries),
-            body_marks=np.ascontiguousarray(self._marks[:, pairs:]),
+            body_marks=marks[:, pairs:].copy(),
             turn=self._turn,
         )
-        self._primitive = primitive
-        self._listed = keys
+        self._marks, self._listed = marks, keys
 
     def end(self, m: Minimizer, box: Box | None) -> tuple[Indices, Floats, FrictionForces]:
         """What the contacts remember, keys and slips [R], and the forces that they stand for, in the packing's order."""
         place, held = self._measure(m, box)
-        pairs = len(self._at_j)
-        gap, dx, dy, nx, ny, h, _ = place
-        x, y = m.state[0, self._at_i], m.state[1, self._at_i]
-        first = self._primitives[self._primitive]
-        x[pairs:], y[pairs:] = first[:, 1] + dx[pairs:], first[:, 2] + dy[pairs:]
-        dx[pairs:], dy[pairs:] = h[pairs:] * nx[pairs:], h[pairs:] * ny[pairs:]
-        reach = h.copy()
-        reach[:pairs] += 0.5 * gap[:pairs]  # half way between the outlines
-        grain = m.identity[self._at_i]
-        other, primitive = np.full(len(grain), -1), np.full(len(grain), -1)
-        other[:pairs] = m.identity[self._at_j]
-        primitive[pairs:] = self._primitive
-        slip, limit = held
-        pull = self._stiffness(m) * slip
-        found = (grain, other, primitive, pull * ny, -pull * nx, x + reach * nx, y + reach * ny)
-        touching = limit > 0.0
-        forces = FrictionForces(*(v[touching] for v in (*found, dx, dy, np.abs(slip) >= limit)))
-        return *self._hold(held), forces
-
-    def _stiffness(self, m: Minimizer) -> Floats:
-        """k_t of all pairs (K,) [k]."""
-        c = m.grains.contact_stiffness
-        i, j = self._at_i, self._at_j
-        first, second = c[i[: len(j)]], c[j]
-        both = np.concatenate([2.0 * first * second / (first + second), c[i[len(j) :]]])
-        return TANGENTIAL_STIFFNESS * both
+        many = len(self._at_i)
+        who, values = np.empty((3, many), dtype=np.int64), np.empty((6, many))
+        sliding = np.empty(many, dtype=np.bool_)
+        used = tangential_forces(
+            self._at_i,
+            self._at_j,
+            self._primitive,
+            m.state,
+            m.grains.contact_stiffness,
+            m.identity,
+            self._primitives,
+            place,
+            held,
+            who,
+            values,
+            sliding,
+        )
+        found: tuple[Any, ...] = (*who[:, :used], *values[:, :used], sliding[:used])
+        return *self._hold(held), FrictionForces(*found)
 
     def _measure(self, m: Minimizer, box: Box | None) -> tuple[Floats, Floats]:
         """Geometry (7, K) and slips with their limits (2, K) of all pairs as they stand now."""
@@ -233,55 +236,3 @@ class FrictionalContacts:
         keys = listed[touching]
         order = np.argsort(keys, kind="stable")
         return keys[order], held[0, touching][order]
-
-    def _recall(self, keys: Indices) -> tuple[Floats, NDArray[np.bool_]]:
-        """What the contacts with these keys remember, 0 for new ones; and which do."""
-        if not len(self._keys):
-            return np.zeros(len(keys)), np.zeros(len(keys), dtype=np.bool_)
-        at = np.minimum(np.searchsorted(self._keys, keys), len(self._keys) - 1)
-        known = self._keys[at] == keys
-        return np.where(known, self._slips[at], 0.0), known
-
-    def _round_corners(
-        self,
-        grain: Indices,
-        primitive: Indices,
-        slip: Floats,
-        gap: Floats,
-        known: NDArray[np.bool_],
-    ) -> None:
-        """An edge and the vertex at its end share, for each grain (B,), the slip of the one that has any, and the gap."""
-        many = len(self._corners)
-        key = grain * many + primitive
-        order = np.argsort(key, kind="stable")
-        for edge in self._corners.T:
-            vertex = np.flatnonzero(edge[primitive] >= 0)
-            wanted = grain[vertex] * many + edge[primitive[vertex]]
-            place = np.searchsorted(key, wanted, sorter=order)
-            at = order[np.minimum(place, len(key) - 1)] if len(key) else order
-            found = key[at] == wanted
-            v, e = vertex[found], at[found]
-            fresh, old = known[e] & ~known[v], known[v] & ~known[e]
-            slip[v[fresh]] = slip[e[fresh]]
-            slip[e[old]] = slip[v[old]]
-            gap[v] = np.minimum(gap[v], gap[e])  # that of an edge knows its ends already
-
-
-def _corners(primitives: Floats) -> Indices:
-    """For each primitive (M, 2): the edges that a vertex lies between; -1 where there is none.
-
-    Others may end in the same place: an edge and its vertex have radius and direction in common.
-    """
-    found = np.full((len(primitives), 2), -1)
-    edges, vertices = (np.flatnonzero(primitives[:, 0] == kind) for kind in (EDGE, VERTEX))
-    if not len(edges):
-        return found
-    rows, corners = primitives[edges], primitives[vertices, None]
-    starts = np.column_stack([rows[:, 1:3], -rows[:, 3:5], rows[:, 7]])
-    ends = np.column_stack([rows[:, 5:7], rows[:, 3:5], rows[:, 7]])
-    for side, first in enumerate((3, 5)):
-        corner = corners[..., [1, 2, first, first + 1, 7]]
-        away = [np.abs(points - corner).max(axis=2) for points in (starts, ends)]
-        meets = np.minimum(*away) < _SAME_POINT
-        found[vertices, side] = np.where(meets.any(axis=1), edges[meets.argmax(axis=1)], -1)
-    return found

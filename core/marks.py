@@ -10,7 +10,14 @@ import math
 from core.jit import kernel
 from core.periodic import COINCIDENT, nearest
 from core.rigid_contacts import EDGE, VERTEX, image, nearest_direction, past_end, touch
-from core.slip import body_slip, cut, own_way, pair_slip, share_touched
+from core.slip import (
+    TANGENTIAL_STIFFNESS,
+    body_slip,
+    cut,
+    own_way,
+    pair_slip,
+    share_touched,
+)
 
 
 @kernel
@@ -156,3 +163,87 @@ def lay_out(lists, at_i, at_j, marks, filled, slots):
         filled[i] += 1
         for row in range(4):
             slots[row, at] = marks[row, k]
+
+
+@kernel(fastmath=False)
+def tangential_forces(
+    at_i, at_j, primitive, state, stiffness, identity, primitives, place, held, who, values, sliding
+):
+    """Forces of the pairs that touch, packed to the front; returns their number.
+
+    ``who`` (3, K): grain, other grain or -1, primitive or -1, in the packing's order; ``values`` (6, K): force on the grain x, y
+    [k R], where it acts x, y, and the branch vector x, y [R]; ``sliding`` (K,): at the Coulomb cap. ``place`` and ``held`` as
+    ``measure`` and ``slips`` fill them. Without fast math: the same bits wherever it is compiled.
+    """
+    pairs = at_j.shape[0]
+    used = 0
+    for k in range(at_i.shape[0]):
+        slip, limit = held[0, k], held[1, k]
+        if not limit > 0.0:
+            continue
+        i = at_i[k]
+        nx, ny, h = place[3, k], place[4, k], place[5, k]
+        c = stiffness[i]
+        who[0, used] = identity[i]
+        if k < pairs:
+            j = at_j[k]
+            c = 2.0 * c * stiffness[j] / (c + stiffness[j])
+            who[1, used] = identity[j]
+            who[2, used] = -1
+            x, y = state[0, i], state[1, i]
+            reach = h + 0.5 * place[0, k]  # half way between the outlines
+            values[4, used] = place[1, k]
+            values[5, used] = place[2, k]
+        else:
+            m = primitive[k - pairs]
+            who[1, used] = -1
+            who[2, used] = m
+            x, y = primitives[m, 1] + place[1, k], primitives[m, 2] + place[2, k]
+            reach = h
+            values[4, used] = h * nx
+            values[5, used] = h * ny
+        pull = TANGENTIAL_STIFFNESS * c * slip
+        values[0, used] = pull * ny
+        values[1, used] = -pull * nx
+        values[2, used] = x + reach * nx
+        values[3, used] = y + reach * ny
+        sliding[used] = abs(slip) >= limit
+        used += 1
+    return used
+
+
+@kernel
+def count_beyond(
+    coefficient, who, fx, fy, i, j, pressed, grain, primitive, borne, first, following
+):
+    """How many of the contacts ``who`` (3, K), with forces fx, fy (K,) [k R], pull harder than μ times their normal force.
+
+    That is ``pressed`` between grains i and j (P,), ``borne`` between grain and primitive (B,) [k R], each pair once; 0 where it
+    is not among them. ``first`` (2 N,) and ``following`` (P + B,) are room for chains of the contacts of each grain.
+    """
+    pairs, grains = i.shape[0], first.shape[0] // 2
+    for n in range(first.shape[0]):
+        first[n] = -1
+    for k in range(pairs + grain.shape[0]):
+        n = min(i[k], j[k]) if k < pairs else grains + grain[k - pairs]
+        following[k] = first[n]
+        first[n] = k
+    beyond = 0
+    for c in range(fx.shape[0]):
+        normal = 0.0
+        if who[1, c] >= 0:
+            low, high = min(who[0, c], who[1, c]), max(who[0, c], who[1, c])
+            k = first[low]
+            while k >= 0 and max(i[k], j[k]) != high:
+                k = following[k]
+            if k >= 0:
+                normal = pressed[k]
+        else:
+            k = first[grains + who[0, c]]
+            while k >= 0 and primitive[k - pairs] != who[2, c]:
+                k = following[k]
+            if k >= 0:
+                normal = borne[k - pairs]
+        if math.sqrt(fx[c] * fx[c] + fy[c] * fy[c]) > coefficient * normal:
+            beyond += 1
+    return beyond

@@ -67,7 +67,10 @@ class Outlet:
 
     def has_come_out(self, packing: Packing) -> NDArray[np.bool_]:
         """True for the grains that are in the space under the funnel, (N,)."""
-        return inside(list(self.below), packing.x, packing.y)
+        come_out: NDArray[np.bool_] = packing.y < max((y for _, y in self.below), default=-math.inf)
+        if come_out.any():
+            come_out &= inside(list(self.below), packing.x, packing.y)
+        return come_out
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ import numpy as np
 from hypothesis import settings
 
 from core import observables
+from core.candidates import BODY, GRAIN
 from core.friction import Friction
-from core.frictional_contacts import BODY, GRAIN, FrictionForces
+from core.frictional_contacts import FrictionForces
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Quasistatic
 from core.relaxation import Relaxation
