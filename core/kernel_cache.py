@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from contextlib import suppress
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -96,39 +96,50 @@ def keep(dispatcher: Any) -> None:
     )
 
 
-def _cache(function: Any, where: Path) -> Any:
-    """Numba's cache of a function in a folder that stands for all that the code depends on."""
+class _Place:
+    """Says what Numba asks of a place: a folder that stands for all that the code depends on."""
 
-    class Locator:
-        """Says what Numba asks of a place."""
+    def __init__(self, where: Path, function: Any = None) -> None:
+        self._where, self._function = where, function
 
-        @classmethod
-        def from_function(cls, function: Any, source: str) -> Any:
-            del function, source
-            return cls()
+    def from_function(self, function: Any, source: str) -> _Place:
+        """The place of a function's code: the same, wherever its source is."""
+        del source
+        return _Place(self._where, function)
 
-        def ensure_cache_path(self) -> None:
-            where.mkdir(parents=True, exist_ok=True)
+    def ensure_cache_path(self) -> None:
+        """Make the folder."""
+        self._where.mkdir(parents=True, exist_ok=True)
 
-        def get_cache_path(self) -> str:
-            return str(where)
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(self._where)
 
-        def get_source_stamp(self) -> str:
-            return where.name  # neither the source's time nor its place matter
+    def get_source_stamp(self) -> str:
+        """What changes with the source: neither its time nor its place matter."""
+        return self._where.name
 
-        def get_disambiguator(self) -> str:
-            return str(function.__code__.co_firstlineno)
+    def get_disambiguator(self) -> str:
+        """What tells functions of one name apart."""
+        return str(self._function.__code__.co_firstlineno)
 
-    base: Any = CompileResultCacheImpl
 
-    class Impl(base):  # type: ignore[misc]
-        _locator_classes = (Locator,)
+_FunctionCache: Any = FunctionCache
+_CacheImpl: Any = CompileResultCacheImpl
 
-    class Cache(FunctionCache):
-        _impl_class = Impl
 
-    made: Any = Cache
-    return made(function)
+class _Impl(_CacheImpl):  # type: ignore[misc]
+    def __init__(self, where: Path, function: Any) -> None:
+        self._locator_classes = (_Place(where),)
+        super().__init__(function)
+
+
+class _Cache(_FunctionCache):  # type: ignore[misc]
+    """Numba's cache of a function in a folder."""
+
+    def __init__(self, function: Any, where: Path) -> None:
+        self._impl_class = partial(_Impl, where)
+        super().__init__(function)
 
 
 @cache
@@ -159,6 +170,12 @@ def _warn(root: Path, reason: str) -> None:
     )
 
 
+@cache
+def _came(where: Path) -> bool:
+    """Did that folder come with the program?"""
+    return where.is_dir()
+
+
 class _Kept:
     """Cache of one function: what cannot be read is missing, what cannot be written is not kept.
 
@@ -170,12 +187,12 @@ class _Kept:
 
     @cached_property
     def _own(self) -> Any:
-        return _cache(self._function, self._where) if usable(self._where) else None
+        return _Cache(self._function, self._where) if usable(self._where) else None
 
     @cached_property
     def _shipped(self) -> Any:
         where = SHIPPED / self._where.name
-        return _cache(self._function, where) if where.is_dir() else None
+        return _Cache(self._function, where) if _came(where) else None
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._own or self._shipped, name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
-    SOLVER,
     STRONGEST,
     Check,
     Curve,
@@ -32,6 +30,7 @@ from scenes.scene import (
     Values,
     hand,
     solver,
+    solver_parameters,
     step,
 )
 from scenes.text import Text, counted
@@ -70,7 +69,7 @@ class Avalanches(Scene):
         # The shear stress is a small difference of large contact forces: at 1e-2 it is off by some per cent, and avalanches
         # come at the wrong strains. At 1e-3 one packing of four still took another way at once; 1e-4 costs 1.7 times as
         # much, less than a picture (`study accuracy`).
-        *(replace(p, default=1e-4) if p.name == "tolerance" else p for p in SOLVER),
+        *solver_parameters(tolerance=1e-4),
     )
 
     def ingredients(self, settings: Values) -> Ingredients:

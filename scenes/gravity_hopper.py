@@ -24,7 +24,6 @@ from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    SOLVER,
     STRONGEST,
     Check,
     Curve,
@@ -39,6 +38,7 @@ from scenes.scene import (
     friction,
     hand,
     solver,
+    solver_parameters,
 )
 from scenes.text import Text, counted
 
@@ -105,7 +105,7 @@ class GravityHopper(Scene):
         *MATERIAL,
         *PAPER,
         # Shaking is the rougher, the further the funnel goes in one increment: a drag is all that inertia is here.
-        *(replace(p, default=0.1) if p.name == "step" else p for p in SOLVER),
+        *solver_parameters(step=0.1),
     )
 
     def ingredients(self, settings: Values) -> Ingredients:

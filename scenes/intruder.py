@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from core.errors import InputError
 from core.generate import Progress, pack
@@ -14,7 +13,6 @@ from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
 from scenes.scene import (
     FRICTION,
-    SOLVER,
     Handle,
     Latest,
     Remarks,
@@ -24,6 +22,7 @@ from scenes.scene import (
     friction,
     hand,
     solver,
+    solver_parameters,
     step,
 )
 from scenes.text import Text
@@ -67,7 +66,7 @@ class Intruder(Scene):
         # is not small: against increments solved again at 1e-5 the force is off by 2 to 4 % in the median, one in ten by more
         # than 19 to 41 %, and the mean drag of regular grains by 13 %. At 3e-3: .5 to .8 %, 3 to 12 %, for 1.4 to 1.6 times
         # the evaluations (`study accuracy --estimate`).
-        *(replace(p, default=3e-3) if p.name == "tolerance" else p for p in SOLVER),
+        *solver_parameters(tolerance=3e-3),
     )
 
     def validate(self, settings: Values) -> None:

@@ -393,6 +393,11 @@ SOLVER = (
 )
 
 
+def solver_parameters(**defaults: float) -> tuple[Parameter, ...]:
+    """``SOLVER``, some of it with defaults of a scene's own."""
+    return tuple(replace(p, default=defaults.get(p.name, p.default)) for p in SOLVER)
+
+
 def step(settings: Values) -> float:
     """How far a body moves in one increment at most [R]: as asked, but no further than the smallest grain allows."""
     asked = float(settings["step"])

@@ -22,11 +22,6 @@ class Background:
             self._begun = True
             self._process = start(parts.missing(parts.of_scenes(registry.names())), idle=True)
 
-    @property
-    def busy(self) -> bool:
-        """Is something being compiled?"""
-        return self._process is not None and self._process.poll() is None
-
     def close(self) -> None:
         """End it. What it had finished is kept."""
         if self._process is not None:
