@@ -312,11 +312,12 @@ def test_escape_leads_to_the_menu_then_out(running: Desk) -> None:
 
 def test_a_notice_goes_with_what_it_was_about(running: Desk) -> None:
     """What is carried is put down: by a click, by Escape, by a page that opens."""
-    for put_down in (
+    ways: list[Callable[[], None]] = [
         lambda: running.click(running.handle_place()),
         lambda: running.key(pygame.K_ESCAPE),
         lambda: running.key(pygame.K_m),
-    ):
+    ]
+    for put_down in ways:
         running.point(running.handle_place())
         running.click(running.handle_place())
         assert running.app.stage.notices.latest == words.CARRYING
