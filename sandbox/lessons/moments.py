@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from sandbox.lessons.lesson import Condition
 from sandbox.session.frame import Frame
 
-NEAR = 1e-3  # a hand that is no further short of a place is there [R]
+# What reads as the number that is wanted counts as that: nobody sees what is behind the last digit.
+PLACE_DECIMALS, FIGURES = 3, 4  # of a place [R] that is told or given, of any other number
+NEAR = 10.0**-PLACE_DECIMALS  # of a way: either end may be off by half a digit [R]
 ON_SCREEN = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
 
 Point = tuple[float, float]
@@ -73,17 +75,23 @@ def met(condition: Condition, then: Moment, now: Moment) -> bool:
     if c.setting:
         before, after = then.settings.get(c.setting), now.settings.get(c.setting)
         if math.isfinite(c.below):
-            return isinstance(after, (int, float)) and after <= c.below
+            return isinstance(after, (int, float)) and after <= c.below + _half_digit(c.below)
         return before != after
     if c.out:
         return now.out - then.out >= c.out
     if c.force:
-        return now.force >= c.force
+        return now.force >= c.force - _half_digit(c.force)
     if c.grains:
         return abs(now.grains - then.grains) >= c.grains
     if c.walls:
         return now.bodies - then.bodies >= c.walls
     return now.increment - then.increment >= c.increments
+
+
+def _half_digit(value: float) -> float:
+    """Half of the last digit of a number as it is shown."""
+    power = math.floor(math.log10(abs(value))) if value else 0
+    return 0.5 * 10.0 ** (power + 1 - FIGURES)
 
 
 def _gone(start: Point, end: Point, way: str, middle: Point) -> float:

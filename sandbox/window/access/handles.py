@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from sandbox.draw.numbers import number
 from sandbox.draw.widgets.scale import shown
+from sandbox.lessons.moments import PLACE_DECIMALS
 from sandbox.session.frame import Frame, HandleState
 from sandbox.window.access.node import Do, Node, Number, changes
 from sandbox.window.canvas.arrows import FINE_STEP, STEP, Arrows
@@ -58,7 +59,7 @@ def _along(
         go(f"{CANVAS}/{handle.name}")
         arrows.lead(handle, by * axis[0], by * axis[1])
 
-    number = Number(round(place, 3), round(ends[0], 3), round(ends[1], 3), STEP)
+    number = Number(*(round(value, PLACE_DECIMALS) for value in (place, *ends)), STEP)
     does: dict[str, Do] = {"FOCUS": lambda _: go(f"{CANVAS}/{handle.name}")}
     does |= changes(number, lead_to)
     does |= {"INCREMENT": lambda _: lead(STEP), "DECREMENT": lambda _: lead(-STEP)}
