@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import pygame
 
 from core.arrays import Floats
 from sandbox.draw.painter import Painter
@@ -17,6 +18,7 @@ from sandbox.words import words
 
 COLUMNS = 65  # values along the axis
 DASH = (9.0, 5.0)  # at scale 1 [px]
+SWATCH = 31.0  # length of a line in the legend at scale 1 [px]
 
 
 @dataclass
@@ -56,10 +58,28 @@ class Sketch:
         return round(min(max((along - low) / (high - low), 0.0), 1.0) * (COLUMNS - 1))
 
 
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """A measured curve in the legend of a sketch."""
+
+    text: str
+    colour: int
+    dash: tuple[float, ...]  # at scale 1 [px]
+
+
 def draw_sketch(
-    painter: Painter, box: PlotBox, sketch: Sketch, *, asking: bool, ring: bool
+    painter: Painter,
+    box: PlotBox,
+    sketch: Sketch,
+    *,
+    asking: bool,
+    ring: bool,
+    measured: Sequence[Beside] = (),
 ) -> None:
-    """The curve, dashed, with its name; while it is asked for a frame round the plot, and the cursor of the keyboard."""
+    """The curve, dashed, with its name; while it is asked for a frame round the plot, and the cursor of the keyboard.
+
+    With what was ``measured`` the names are in a legend.
+    """
     scale, theme = painter.scale, painter.theme
     inside = box.rect.inflate(round(8 * scale), round(8 * scale))
     dash = [length * scale for length in DASH]
@@ -70,7 +90,7 @@ def draw_sketch(
             painter.disc(float(x[0]), float(y[0]), 2.5 * scale, theme.text, clip=inside)
             continue
         painter.polyline(x, y, 2.6 * scale, theme.text, inside, dash)
-        if not named:
+        if not named and not measured:
             named = True
             at = min(
                 max(float(y[0]) - 11 * scale, box.rect.top + 8 * scale), box.rect.bottom - 8 * scale
@@ -78,6 +98,9 @@ def draw_sketch(
             painter.text(
                 words.YOUR_SKETCH, float(x[0]) + 6 * scale, at, size=SMALL, colour=theme.text
             )
+    if measured:
+        own = Beside(words.YOUR_SKETCH, theme.text, DASH)
+        _draw_legend(painter, box, [own, *measured], sketch)
     if not asking:
         return
     if ring:
@@ -91,3 +114,26 @@ def draw_sketch(
         colour, arm = ring_colour(theme), 9.0 * scale
         painter.line((x0 - arm, y0), (x0 + arm, y0), 2.0 * scale, colour)
         painter.line((x0, y0 - arm), (x0, y0 + arm), 2.0 * scale, colour)
+
+
+def _draw_legend(painter: Painter, box: PlotBox, lines: Sequence[Beside], sketch: Sketch) -> None:
+    """A line and a name each, in the upper corner where less has been drawn."""
+    scale, theme, type_ = painter.scale, painter.theme, painter.type
+    pad, swatch = round(6 * scale), round(SWATCH * scale)
+    line = type_.leading(SMALL)
+    room = box.rect.width - 3 * pad - swatch
+    texts = [type_.shortened(each.text, SMALL, room) for each in lines]
+    width = max(type_.width(text, SMALL) for text in texts) + swatch + 3 * pad
+    place = pygame.Rect(box.rect.left, box.rect.top, width, line * len(lines) + pad)
+    drawn = np.isfinite(sketch.up)
+    x, y = box.x(sketch.along[drawn]), box.y(sketch.up[drawn])
+    high = y < place.bottom
+    if (high & (x < place.right)).sum() > (high & (x > box.rect.right - width)).sum():
+        place.right = box.rect.right
+    painter.fill(place, theme.panel)
+    for row, (each, text) in enumerate(zip(lines, texts, strict=True)):
+        middle = place.top + pad // 2 + (row + 0.5) * line
+        ends = np.array([place.left + pad, place.left + pad + swatch], dtype=np.float64)
+        dash = [length * scale for length in each.dash]
+        painter.polyline(ends, np.full(2, middle), 2.6 * scale, each.colour, dash=dash)
+        painter.text(text, place.left + 2 * pad + swatch, middle, size=SMALL, colour=theme.text)

@@ -33,7 +33,7 @@ def draw_lamp(painter: Painter, x: float, y: float, colour: int) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _Item:
+class Item:
     """A part of a line: its text, how long to keep it (low numbers first to go)."""
 
     text: str
@@ -41,7 +41,7 @@ class _Item:
     least: str = ""  # text whose width is reserved, so that counting moves nothing
 
 
-def _width(painter: Painter, item: _Item) -> int:
+def _width(painter: Painter, item: Item) -> int:
     return max(painter.type.width(item.text, BODY), painter.type.width(item.least, BODY))
 
 
@@ -63,22 +63,25 @@ def draw_status(
     if len(frames) > 1 and state.colour != theme.good:
         said = f"{marks(frames)[frames.index(frame)].name}: {said}"
 
-    items = _items(frames, paused)
+    items_left = items(frames, paused)
     room = rect.width - 2 * pad
     wanted = lamp_space(painter) + type_.width(said, BODY)
     rate_width = type_.width(rate, BODY) + gap if rate else 0
-    while items and sum(_width(painter, item) + gap for item in items) + wanted + rate_width > room:
+    while (
+        items_left
+        and sum(_width(painter, item) + gap for item in items_left) + wanted + rate_width > room
+    ):
         if rate_width:
             rate_width = 0
             continue
-        items.remove(min(items, key=lambda item: item.rank))
+        items_left.remove(min(items_left, key=lambda item: item.rank))
 
     x = float(rect.left + pad)
-    for index, item in enumerate(items):
+    for index, item in enumerate(items_left):
         painter.text(item.text, x, middle, colour=theme.soft_text)
         x += _width(painter, item) + gap
         dot = x - gap // 2
-        if index + 1 < len(items):
+        if index + 1 < len(items_left):
             painter.disc(dot, middle + scale, 1.6 * scale, theme.soft_text)
     draw_lamp(painter, x, middle, state.colour)
     x += lamp_space(painter)
@@ -89,7 +92,7 @@ def draw_status(
         painter.text(rate, rect.right - pad, middle, colour=theme.soft_text, anchor="right")
 
 
-def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
+def items(frames: Sequence[Frame], paused: bool) -> list[Item]:
     """What stands before the lamp."""
     frame, several = frames[0], len(frames) > 1
     packing = words.PACKINGS.get(frame.packing, frame.packing)
@@ -99,26 +102,26 @@ def _items(frames: Sequence[Frame], paused: bool) -> list[_Item]:
         packing = side.format(count=len(frames))
     increment = max(frame.increment for frame in frames)
     one_seed = all(each.seed == frame.seed for each in frames)
-    items = [
-        _Item(words.title(frame.scene) or frame.scene.replace("_", " "), 2),
-        _Item(packing, 4),
-        *([_Item(words.SEED.format(seed=frame.seed), 1)] if one_seed else []),
-        _Item(
+    found = [
+        Item(words.title(frame.scene) or frame.scene.replace("_", " "), 2),
+        Item(packing, 4),
+        *([Item(words.SEED.format(seed=frame.seed), 1)] if one_seed else []),
+        Item(
             words.INCREMENT.format(increment=increment), 3, words.INCREMENT.format(increment="000")
         ),
     ]
     if frame.grains_out and not several:
         out = words.GRAINS_OUT
-        items.append(_Item(out.format(count=frame.grains_out), 5, out.format(count="000")))
+        found.append(Item(out.format(count=frame.grains_out), 5, out.format(count="000")))
     beyond = sum(int(np.count_nonzero(frame.squeezed)) for frame in frames)
     if beyond:
         squeezed = words.SQUEEZED
-        items.append(_Item(squeezed.format(count=beyond), 6, squeezed.format(count="00")))
+        found.append(Item(squeezed.format(count=beyond), 6, squeezed.format(count="00")))
     cone = max(frame.beyond_cone for frame in frames)
     if cone > 0.0:
-        items.append(_Item(words.BEYOND_CONE.format(share=percent(cone)), 6))
+        found.append(Item(words.BEYOND_CONE.format(share=percent(cone)), 6))
     if any(frame.protocol for frame in frames):
-        items.append(_Item(words.DRIVE, 2))
+        found.append(Item(words.DRIVE, 2))
     if paused:
-        items.append(_Item(words.PAUSED, 6))
-    return items
+        found.append(Item(words.PAUSED, 6))
+    return found

@@ -113,6 +113,13 @@ def at_columns(stroke: Floats, force: Floats, along: Floats) -> Floats:
     return np.where((along >= x[0]) & (along <= reached[-1]), values, np.nan)
 
 
+def mean_distance(stroke: Floats, force: Floats, along: Floats, up: Floats) -> float:
+    """How far a measured curve lies from a sketched one, up or down, in the mean over where both are; nan if that is nowhere."""
+    away = np.abs(at_columns(stroke, force, along) - up)
+    both = np.isfinite(away)
+    return float(away[both].mean()) if both.any() else float("nan")
+
+
 def _cell(predict: Predict, given: Given) -> str:
     if not isinstance(given, float):
         return _points(*given)

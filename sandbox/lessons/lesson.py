@@ -29,6 +29,7 @@ DEEDS = (
     "measure",
 )
 
+ROUNDING = 1e-9  # of a number: what nobody has typed
 # Which way a handle is to go: on the screen, or towards the middle of what there is and away from it.
 WAYS = ("left", "right", "up", "down", "inwards", "outwards")
 
@@ -93,7 +94,8 @@ class Predict:
         """Is that the right option or number? None where nothing is."""
         if self.right is None:
             return None
-        return abs(given - self.right) <= (self.within if self.kind == "number" else 0.0)
+        off, most = abs(given - self.right), self.within if self.kind == "number" else 0.0
+        return off <= most or math.isclose(off, most, abs_tol=ROUNDING * abs(self.right))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ import pygame
 
 from sandbox.draw.pages.tour_card import FIELD, OPTION, Field
 from sandbox.draw.painter import Painter
-from sandbox.draw.sketch import COLUMNS, Sketch, draw_sketch
+from sandbox.draw.sketch import COLUMNS, Beside, Sketch, draw_sketch
 from sandbox.draw.widgets.scale import shown, typed
 from sandbox.lessons.answers import Given
 from sandbox.lessons.lesson import Predict
@@ -17,6 +17,7 @@ from sandbox.window.canvas.arrows import WAYS
 from sandbox.window.keys import Action
 from sandbox.window.panel.line_edit import Edit
 from sandbox.window.parts import Silent
+from sandbox.window.sketched import beside
 from sandbox.window.stage import Stage
 from sandbox.words import words
 
@@ -242,8 +243,20 @@ class Asking(Silent):
         box = self.stage.renderer.plot_box
         if self.sketch is not None and box is not None:
             draw_sketch(
-                painter, box, self.sketch, asking=self.on, ring=self.stage.focus.ring == SKETCH
+                painter,
+                box,
+                self.sketch,
+                asking=self.on,
+                ring=self.stage.focus.ring == SKETCH,
+                measured=self.measured,
             )
+
+    @property
+    def measured(self) -> list[Beside]:
+        """What was measured beside the sketch so far; nothing while it is still asked for."""
+        if self.on or self.sketch is None:
+            return []
+        return beside(self.sketch, [frame for frame, _, _ in self.stage.picture.panes()])
 
     def cursor(self) -> int | None:
         """A cross over the plot."""

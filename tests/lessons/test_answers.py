@@ -12,7 +12,7 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli.main import main
-from sandbox.lessons.answers import COLUMNS, Answers, at_columns
+from sandbox.lessons.answers import COLUMNS, Answers, at_columns, mean_distance
 from sandbox.lessons.lesson import Lesson, Predict, Said, Step
 from tests.draw.frames import intruder_frame
 
@@ -97,3 +97,24 @@ def test_a_curve_that_goes_back_counts_where_it_was_first() -> None:
     found = at_columns(stroke, force, np.array([-1.0, 0.5, 1.0, 2.0, 3.0]))
     assert np.array_equal(found, [np.nan, 0.5, 1.0, 4.0, np.nan], equal_nan=True)
     assert np.isnan(at_columns(np.zeros(1), np.zeros(1), np.zeros(2))).all()
+
+
+def test_the_mean_distance_is_that_where_both_are() -> None:
+    stroke, force = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0])
+    along = np.array([-1.0, 0.0, 1.0, 2.0, 3.0])
+    assert mean_distance(stroke, force, along, np.array([9.0, 0.0, 1.5, np.nan, 9.0])) == 0.25
+    assert mean_distance(stroke, force, along, np.array([9.0, 1.0, 0.0, 3.0, 9.0])) == 1.0
+    nothing = mean_distance(stroke, force, along, np.array([9.0, np.nan, np.nan, np.nan, 9.0]))
+    assert np.isnan(nothing)
+    assert np.isnan(mean_distance(stroke[:1], force[:1], along, np.ones(5)))
+
+
+@pytest.mark.parametrize("right", [0.1, 1.1, 7.3, -0.7, 120.1])
+def test_a_number_at_the_edge_of_what_is_right_is_right(right: float) -> None:
+    """As somebody reckons with decimals, not as a machine does."""
+    for within in (0.1, 0.2, 0.3):
+        predict = Predict("number", Said({"en": "How much?"}), right=right, within=within)
+        for given in (round(right - within, 1), round(right + within, 1)):
+            assert predict.is_right(given)
+            beyond = given + (0.001 if given > right else -0.001)
+            assert not predict.is_right(beyond)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import re
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pygame
 import pytest
 
 from sandbox.draw.pages.explore_page import MapCell
+from sandbox.draw.painter import Painter
+from sandbox.draw.widgets.scale import shown
+from sandbox.lessons.answers import mean_distance
+from sandbox.lessons.reading import parse_lesson
 from sandbox.session.commands import Change, Grab, Move, Protocol
 from sandbox.session.history import Event
 from sandbox.window.access import reader as reader_module
@@ -19,6 +25,7 @@ from sandbox.window.access.node import ROOT, Node
 from sandbox.window.access.reader import SAFE, Reader
 from sandbox.window.access.speech import Speech
 from sandbox.window.access.tree import Tree
+from sandbox.window.asking import SKETCH
 from sandbox.words import language, words
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
@@ -235,6 +242,131 @@ def test_notices_and_events_are_said_once(desk: Desk, monkeypatch: pytest.Monkey
     monkeypatch.setattr(stage.picture, "panes", lambda: (pane,))
     assert list(speech.new()) == [event.text]
     assert list(speech.new()) == []
+
+
+@pytest.mark.parametrize("packings", [(), ("regular", "auxetic")])
+def test_every_reading_under_the_canvases_is_in_the_tree(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch, packings: tuple[str, ...]
+) -> None:
+    """All words that are drawn there, but for the pictures a second."""
+    stage = desk.app.stage
+    stage.start("intruder", packings=packings)
+    desk.until(lambda: len(stage.picture.panes()) == max(len(packings), 1))
+    stage.send(Protocol(True))
+    desk.until(lambda: all(pane[0].increment > 2 for pane in stage.picture.panes()))
+    desk.key(pygame.K_SPACE)
+    frames = [pane[0] for pane in stage.picture.panes()]
+    told = replace(frames[0], notices=("cancelled: everything is as it was before",), grains_out=3)
+    panes = [
+        (frame, *pane[1:])
+        for frame, pane in zip([told, *frames[1:]], stage.picture.panes(), strict=True)
+    ]
+    monkeypatch.setattr(stage.picture, "panes", lambda: panes)
+    renderer, drawn = stage.renderer, []
+    text = Painter.text
+
+    def noted(painter: Painter, said: str, x: float, y: float, **more: Any) -> pygame.Rect:
+        under = y > renderer.layout.canvas.bottom - renderer.layout.canvas.height // 3
+        if under and not renderer.layout.timeline.collidepoint(x, y):
+            drawn.append(said)
+        return text(painter, said, x, y, **more)
+
+    monkeypatch.setattr(Painter, "text", noted)
+    renderer.draw([frame for frame, *_ in panes], paused=stage.panes.paused)
+    nodes = seen(desk).nodes.values()
+    there = " ".join(f"{node.label} {node.text}" for node in nodes)
+    status = " ".join(node.text for node in nodes if node.name.startswith(("line", "status/")))
+    assert len(drawn) > 5
+    for one in drawn:
+        if one in status or one.endswith("…"):
+            continue
+        for word in re.findall(r"[^\W\d_]+", one):  # the plot has fewer digits
+            assert word in there, one
+    for frame in frames:
+        for values in (frame.curve_force, frame.curve_stroke):
+            assert shown(float(values[-1])) in there
+
+
+def test_readings_are_said_where_a_run_has_come_to_rest(desk: Desk) -> None:
+    speech = Speech(desk.app.stage, desk.app.guide)
+    frame = desk.app.stage.picture.panes()[0][0]
+    speech.begin()
+
+    def at(increment: int, now: float) -> list[str]:
+        moved = replace(frame, increment=increment, curve_force=np.array([0.0, 0.25 * increment]))
+        pane = moved, *desk.app.stage.picture.panes()[0][1:]
+        speech.stage = SimpleNamespace(  # type: ignore[assignment]
+            picture=SimpleNamespace(panes=lambda: [pane]), renderer=desk.app.stage.renderer
+        )
+        return list(speech._from_the_readings(now))
+
+    assert at(frame.increment, 100.0) == []  # what there was before anybody listened
+    for step in range(1, 9):
+        assert at(step, 100.0 + 0.1 * step) == []
+    (said,) = at(8, 103.0)
+    assert "force on the intruder 2 k R" in said
+    assert at(8, 104.0) == []
+
+
+SKETCHED = """
+format = "auxetic-sandbox lesson"
+version = 1
+scene = "intruder"
+[[step]]
+key = "draw"
+packings = ["mixed"]
+say = "Look."
+do = "Drag."
+until = { increments = 2 }
+[step.predict]
+kind = "sketch"
+ask = "How does it go on?"
+along = [0, 30]
+up = [0, 4]
+"""
+
+
+def test_a_sketch_is_told_while_it_is_drawn_and_compared_after(desk: Desk) -> None:
+    app = desk.app
+    speech = Speech(app.stage, app.guide)
+    app.guide.begin(parse_lesson("mine", SKETCHED.encode(), ""))
+    desk.until(lambda: bool(app.stage.picture.panes()) and not app._splash)
+    app.tick()
+
+    def heard(seconds: float = 0.0) -> list[str]:
+        return [*speech._from_the_sketch(seconds), *speech._from_the_sketch(seconds + 10.0)]
+
+    node = seen(desk).nodes[SKETCH]
+    assert words.SKETCH_NOTHING in node.text
+    assert app.stage.picture.panes()[0][0].curve_label in node.text
+    assert node.text in heard()
+    desk.key(pygame.K_SPACE, " ")
+    for key in (*[pygame.K_RIGHT] * 8, *[pygame.K_UP] * 20):
+        desk.key(key)
+    desk.key(pygame.K_SPACE, " ")
+    drawn = seen(desk).nodes[SKETCH].text
+    assert "17 points, from 0 at 0 to 2 at 7.5" in drawn
+    assert words.SKETCH_PEN.format(along="7.5", up="2") in drawn
+    said = heard(20.0)
+    assert any("17 points" in one for one in said)
+    assert any("7.5" in one for one in said)
+    assert heard(40.0) == []
+    desk.key(pygame.K_RETURN, "\r")
+    assert SKETCH not in seen(desk).nodes
+    assert "17 points" in seen(desk).nodes["sketch"].text
+    app.stage.send(Protocol(True))
+    desk.until(lambda: app.guide.done)
+    app.stage.panes.pause_or_go_on()
+    desk.until(lambda: not app.stage.picture.panes()[0][0].busy)
+    app.tick()
+    frame = app.stage.picture.panes()[0][0]
+    sketch = app.guide.asking.sketch
+    assert sketch is not None
+    away = mean_distance(frame.curve_stroke, frame.curve_force, sketch.along, sketch.up)
+    (line,) = [each.text for each in app.guide.asking.measured]
+    assert f"{shown(float(f'{away:.3g}'))} k R" in line
+    assert seen(desk).nodes["sketch/0"].text == line
+    assert heard(60.0) == [line]  # once
 
 
 def test_a_lesson_says_what_comes_next(desk: Desk) -> None:

@@ -59,7 +59,8 @@ def _along(
         go(f"{CANVAS}/{handle.name}")
         arrows.lead(handle, by * axis[0], by * axis[1])
 
-    number = Number(*(round(value, PLACE_DECIMALS) for value in (place, *ends)), STEP)
+    told, low, high = (round(value, PLACE_DECIMALS) for value in (place, *ends))
+    number = Number(told, low, high, STEP)
     does: dict[str, Do] = {"FOCUS": lambda _: go(f"{CANVAS}/{handle.name}")}
     does |= changes(number, lead_to)
     does |= {"INCREMENT": lambda _: lead(STEP), "DECREMENT": lambda _: lead(-STEP)}

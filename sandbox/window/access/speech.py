@@ -1,16 +1,41 @@
-"""What is read out when it happens: notices, events, and what a lesson says next."""
+"""What is read out when it happens: notices, events, readings where a run comes to rest, a sketch, what a lesson says."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
 
-from sandbox.draw.marks import marks
+from sandbox.window.access.readings import frames_of, names_of, reading
 from sandbox.window.guide import Guide
+from sandbox.window.sketched import pen, told
 from sandbox.window.stage import Stage
 from sandbox.words import words
 
 LONG = 1.0  # a wait that is told of [s]
+REST = 0.7  # what has stayed the same for so long has come to rest [s]
+
+
+class Settled:
+    """Something that changes, and is told when it has stopped to."""
+
+    def __init__(self, rest: float) -> None:
+        self._rest = rest  # [s]
+        self._now: object = None
+        self._since = 0.0
+        self._taken: object = None
+
+    def settles(self, now: object, time: float) -> bool:
+        """Has it come to rest at something that has not been told? Asked again and again; then it has."""
+        if now != self._now:
+            self._now, self._since = now, time
+        if self._now == self._taken or time - self._since < self._rest:
+            return False
+        self._taken = self._now
+        return True
+
+    def take(self) -> None:
+        """What there is now need not be told."""
+        self._taken = self._now
 
 
 class Speech:
@@ -23,17 +48,27 @@ class Speech:
         self._card: tuple[str, ...] = ()
         self._build: tuple[str, float] = ("", 0.0)  # what is being built, and since when [s]
         self._told = ""  # what has been said of it
+        self._notes: frozenset[str] = frozenset()  # that stand under the canvases
+        self._run = Settled(REST)
+        self._sketch, self._pen = Settled(REST), Settled(REST)
+        self._compared = False  # has it been said how far the sketch is off?
 
     def begin(self) -> None:
         """Somebody listens from now on: what was before is not said."""
         for _ in self.new():
             pass
+        self._run.take()
+        self._sketch.take()
+        self._pen.take()
 
     def new(self) -> Iterator[str]:
         """What is to be said, in the order in which it came."""
         yield from self._from_the_card()
+        now = time.perf_counter()
         yield from self._from_the_runs()
-        yield from self._from_the_build(time.perf_counter())
+        yield from self._from_the_readings(now)
+        yield from self._from_the_sketch(now)
+        yield from self._from_the_build(now)
         notices = self.stage.notices
         fresh, self._notices = notices.count - self._notices, notices.count
         if fresh:
@@ -62,11 +97,37 @@ class Speech:
             yield words.title(snapshot.frame.scene, snapshot.frame.title)
 
     def _from_the_runs(self) -> Iterator[str]:
-        frames = [pane[0] for pane in self.stage.picture.panes()]
-        names = [mark.name for mark in marks(frames)] if len(frames) > 1 else [""]
-        for pane, (frame, name) in enumerate(zip(frames, names, strict=False)):
+        """Events, and what else stands under a canvas and did not before."""
+        frames = frames_of(self.stage)
+        said = []
+        notes = set()
+        for pane, (frame, name) in enumerate(zip(frames, names_of(frames), strict=True)):
             known = self._events.get(pane, len(frame.events))
             self._events[pane] = len(frame.events)
-            for event in frame.events[known:]:
-                said = words.say(event.text)
-                yield f"{name}: {said}" if name else said
+            said += [f"{name}{words.say(event.text)}" for event in frame.events[known:]]
+            notes |= {f"{name}{words.say(notice)}" for notice in frame.notices}
+        before, self._notes = self._notes, frozenset(notes)
+        yield from said
+        yield from sorted(notes - before - {*said})
+
+    def _from_the_readings(self, now: float) -> Iterator[str]:
+        """Force and way, once a run has come to rest: while it moves they would drown all else."""
+        frames = frames_of(self.stage)
+        if self._run.settles(tuple((f.scene, f.packing, f.increment, f.busy) for f in frames), now):
+            for frame, name in zip(frames, names_of(frames), strict=True):
+                yield f"{name}{reading(self.stage, frame)}"
+
+    def _from_the_sketch(self, now: float) -> Iterator[str]:
+        """Where the pen has stopped, what has been drawn; and how far it lies from what was measured in the end."""
+        asking, frames = self.guide.asking, frames_of(self.stage)
+        if asking.sketch is None or not frames:
+            self._compared = False
+            return
+        if asking.on:
+            if self._pen.settles(text := pen(asking.sketch), now) and text:
+                yield text
+            if self._sketch.settles(text := told(asking.sketch, frames[0]), now):
+                yield text
+        elif self.guide.done and not self._compared:
+            self._compared = True
+            yield from (each.text for each in asking.measured)

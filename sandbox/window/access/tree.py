@@ -6,18 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox.draw.lamp import lamp
-from sandbox.draw.marks import marks
 from sandbox.draw.pages.menu_layout import DISCARD, SCENE, START, TAKE_UP, TOUR
 from sandbox.draw.pages.tour_card import FIELD, OPTION
 from sandbox.draw.widgets.controls import Heading
-from sandbox.draw.widgets.scale import shown
 from sandbox.session.frame import Frame
 from sandbox.window.access import explore
 from sandbox.window.access.controls import chosen, nodes_of
 from sandbox.window.access.handles import hand_keys, nodes_of_handle
 from sandbox.window.access.node import ROOT, Do, Node, Number, button, changes, edges, label
+from sandbox.window.access.readings import frames_of, nodes_of_readings, nodes_of_sketch
 from sandbox.window.actions import Actions
+from sandbox.window.asking import Asking
 from sandbox.window.canvas.arrows import Arrows
 from sandbox.window.focus import CANVAS
 from sandbox.window.guide import Guide
@@ -27,6 +26,7 @@ from sandbox.window.panel.panel import Panel
 from sandbox.window.picture import progress_of
 from sandbox.window.question import ExportQuestion
 from sandbox.window.sections import Value
+from sandbox.window.sketched import pen, told
 from sandbox.window.stage import Stage
 from sandbox.window.timeline import BAR, Timeline
 from sandbox.words import words
@@ -195,8 +195,17 @@ class Tree:
             elif name in guide.titles:
                 nodes.append(button(name, guide.titles[name], press(name), does=does))
             else:
-                nodes.append(Node(name, "CANVAS", page.ask, about=page.hint, does=does))
+                text = self._sketch(guide.asking)
+                nodes.append(Node(name, "CANVAS", page.ask, text, page.hint, does=does))
         self._group("tour", "GROUP", f"{page.title}, {step}", nodes, rect=edges(guide.rect))
+
+    def _sketch(self, asking: Asking) -> str:
+        """What is drawn so far, and where the pen is."""
+        frames = frames_of(self._parts.stage)
+        if asking.sketch is None or not frames:
+            return ""
+        texts = told(asking.sketch, frames[0]), pen(asking.sketch)
+        return " ".join(filter(None, texts))
 
     def _fill(self, value: object) -> None:
         """The number that a lesson asks for."""
@@ -205,17 +214,11 @@ class Tree:
         edit.write(str(value))
 
     def _canvas(self, frames: list[Frame]) -> None:
-        """What runs: status and force of every packing; and the handles, for the arrow keys and as sliders."""
+        """What runs: all that is read off it; and the handles, for the arrow keys and as sliders."""
         stage, frame = self._parts.stage, frames[0]
         title = words.title(frame.scene, frame.title)
-        nodes = []
-        for k, (seen, mark) in enumerate(zip(frames, marks(frames), strict=True)):
-            name = f"{mark.name}: " if len(frames) > 1 else ""
-            state = lamp(seen, stage.renderer.theme).words
-            nodes.append(label(f"status/{k}", f"{name}{state}"))
-            if len(seen.curve_force):
-                force = shown(float(seen.curve_force[-1]))
-                nodes.append(label(f"force/{k}", f"{name}{words.say(seen.curve_label)} {force}"))
+        asking = self._parts.guide.asking
+        nodes = [*nodes_of_readings(stage), *nodes_of_sketch(asking, frames)]
         for handle in frame.handles:
             nodes += nodes_of_handle(handle, frame, self._parts.arrows, self._go)
         places = stage.picture.panes()

@@ -12,7 +12,6 @@ from pathlib import Path
 from core.errors import InputError, reason_of
 from sandbox.files.autosave import Autosave, Leftover
 from sandbox.files.growing_log import GrowingLog
-from sandbox.files.run_logs import RunLogs
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
@@ -21,6 +20,7 @@ from sandbox.session.session import Session
 from sandbox.window.solvers.conductor import Conductor
 from sandbox.window.solvers.in_step import begins_anew, comparable, way_back
 from sandbox.window.solvers.kept_curves import Curves
+from sandbox.window.solvers.run_logs import RunLogs
 from sandbox.window.solvers.solver_thread import Snapshot, SolverThread
 from sandbox.words import words
 from scenes import registry
@@ -63,10 +63,7 @@ class Panes:
     ) -> None:
         """``log``: where the first run is logged, further ones beside it; side by side that of the first packing."""
         self.autosave = autosave
-        self._logs = None if log is None else RunLogs(log)
-        self._log: GrowingLog | None = None  # of the run that there is
-        self._news = ""  # of it, to be told
-        self._trouble = ""  # with it, that was told
+        self._logs = RunLogs(log)
         self.packing = packing  # chosen in the menu, for the next scene
         self.curves = Curves()
         self._make = make
@@ -201,26 +198,18 @@ class Panes:
         self._paused_by_menu = False
         self._conductor = Conductor(begins_anew=self._begins_anew)
         self._conductor.set_speed(self._speed)
-        self._begin_log()
+        log = self._logs.begin()
         self._runs = ()
         logged = kinds.index(wanted.packing)
         self._panes = [
-            self._pane(kind, session, self._log if place == logged else None)
+            self._pane(kind, session, log if place == logged else None)
             for place, (kind, session) in enumerate(zip(kinds, sessions, strict=True))
         ]
 
-    def _begin_log(self) -> None:
-        if self._logs is not None:
-            self._log = self._logs.begin()
-            further = len(self._logs.paths) > 1
-            self._news = words.LOG_FURTHER.format(name=self._log.path.name) if further else ""
-            if self._logs.lost:
-                self._news = words.LOG_LOST.format(reason=self._logs.lost)
-
     def _log_the_end(self, main: Pane) -> None:
         """What has been done in the last increment of a run whose thread has ended."""
-        if self._log is not None and main.solver.snapshot.frame and not main.session.busy:
-            self._log.keep(main.session.log())
+        if main.solver.snapshot.frame and not main.session.busy:
+            self._logs.keep(main.session.log())
 
     def compare(self) -> str:
         """Put the scene's other packings beside the present one, or take them away; returns what to say."""
@@ -373,23 +362,12 @@ class Panes:
         gone_back = self._gone_back
         if gone_back is not None and seen.serial > gone_back and seen.phase == "running":
             self._follow(seen.frame)
-        return self._new_trouble() or self._news_of_log()
+        return self._logs.tell()
 
     @property
     def logs(self) -> list[Path]:
         """Those that there are, in the order of the runs."""
-        return [] if self._logs is None else [p for p in self._logs.paths if p.exists()]
-
-    def _news_of_log(self) -> str:
-        """Where a further run is logged, or that the one before is lost; once."""
-        news, self._news = self._news, ""
-        return news
-
-    def _new_trouble(self) -> str:
-        """That the log cannot be written, once."""
-        trouble = "" if self._logs is None else self._logs.trouble
-        known, self._trouble = self._trouble, trouble
-        return words.LOG_TROUBLE.format(reason=trouble) if trouble and not known else ""
+        return self._logs.there
 
     def close(self, clean: bool = True) -> bool:
         """End the threads and the log.
@@ -421,8 +399,7 @@ class Panes:
         stopped = [solver.stop(max(end - time.monotonic(), 0.0)) for solver in solvers]
         if main is not None and stopped[0]:
             self._log_the_end(main)
-        if self._logs is not None:
-            self._logs.close()
+        self._logs.close()
         return all(stopped)
 
     def _close_autosave(self, clean: bool) -> None:
