@@ -21,8 +21,21 @@ from sandbox.files.lines import append_lines
 from sandbox.lessons.lesson import Lesson, Predict, Step
 from sandbox.session.frame import Frame
 
-COLUMNS = ("date", "sitting", "lesson", "step", "what", "packing", "kind", "given", "unit", "right")
-PREDICTED, MEASURED = "predicted", "measured"
+COLUMNS = (
+    "date",
+    "sitting",
+    "lesson",
+    "step",
+    "what",
+    "packing",
+    "kind",
+    "given",
+    "unit",
+    "right",
+    "when",
+)
+PREDICTED, NO_GUESS, MEASURED = "predicted", "no guess", "measured"
+BEFORE, AFTER = "before", "after"  # the answer was shown in this sitting
 VERDICTS = {True: "yes", False: "no", None: ""}
 _ODD = re.compile(r"[^0-9A-Za-z_.-]")
 
@@ -40,14 +53,23 @@ class Answers:
             3
         )  # tells rows of one sitting from others, and nothing else
         self._waiting: list[Sequence[str]] = []
+        self._shown: set[tuple[str, str]] = set()  # lessons and steps whose answer was shown
         self._check()
 
-    def predicted(self, lesson: Lesson, step: Step, given: Given) -> None:
-        """A prediction, or an answer where nothing is measured."""
+    def predicted(self, lesson: Lesson, step: Step, given: Given | None) -> None:
+        """A prediction, or an answer where nothing is measured; None: somebody went on without one."""
         predict = step.predict
         assert predict is not None
-        right = predict.is_right(given) if isinstance(given, float) else None
-        self._add(lesson, step, PREDICTED, "", _cell(predict, given), VERDICTS[right])
+        when = AFTER if (lesson.name, step.key) in self._shown else BEFORE
+        if given is None:
+            self._add(lesson, step, NO_GUESS, when=when)
+            return
+        right = VERDICTS[predict.is_right(given) if isinstance(given, float) else None]
+        self._add(lesson, step, PREDICTED, given=_cell(predict, given), right=right, when=when)
+
+    def shown(self, lesson: Lesson, step: Step) -> None:
+        """Whoever sits here has seen what comes out in a step: another prediction is none."""
+        self._shown.add((lesson.name, step.key))
 
     def measured(self, lesson: Lesson, step: Step, given: Given, frames: Sequence[Frame]) -> None:
         """What the curves came to where one was sketched, a row a packing; nothing for other predictions."""
@@ -55,10 +77,19 @@ class Answers:
             return
         for frame in frames:
             curve = at_columns(frame.curve_stroke, frame.curve_force, given[0])
-            self._add(lesson, step, MEASURED, frame.packing, _points(given[0], curve), "")
+            points = _points(given[0], curve)
+            self._add(lesson, step, MEASURED, packing=frame.packing, given=points)
 
     def _add(
-        self, lesson: Lesson, step: Step, what: str, packing: str, given: str, right: str
+        self,
+        lesson: Lesson,
+        step: Step,
+        what: str,
+        *,
+        packing: str = "",
+        given: str = "",
+        right: str = "",
+        when: str = "",
     ) -> None:
         if self.path is None:
             return
@@ -67,7 +98,7 @@ class Answers:
         name = _ODD.sub("_", lesson.name).lstrip("-.") or "lesson"
         kind, unit = step.predict.kind, _ODD.sub(" ", step.predict.unit).strip().lstrip("-.")
         self._waiting.append(
-            (day, self._sitting, name, step.key, what, packing, kind, given, unit, right)
+            (day, self._sitting, name, step.key, what, packing, kind, given, unit, right, when)
         )
         self.write()
 
@@ -97,7 +128,9 @@ class Answers:
         with self.path.open("rb") as file:
             first = file.readline(1000)
         if first.strip() != ",".join(COLUMNS).encode():
-            raise InputError(f"{self.path}: this is no table of answers; give another name")
+            raise InputError(
+                f"{self.path}: this is no table of answers, or one of an older program; give another name"
+            )
 
 
 def at_columns(stroke: Floats, force: Floats, along: Floats) -> Floats:

@@ -25,6 +25,11 @@ def tour(scene: str) -> Lesson | None:
     return read_lesson(FOLDER / f"{scene}{SUFFIX}") if scene in scenes() else None
 
 
+def is_tour(lesson: Lesson) -> bool:
+    """Is that the tour of its scene, and no lesson?"""
+    return lesson is tour(lesson.scene)
+
+
 def steps(scene: str) -> tuple[Step, ...]:
     """Its steps; nothing if it has none."""
     found = tour(scene)

@@ -324,7 +324,11 @@ class App:
             stage.renderer.resize(stage.screen.get_size())
         elif event.type == pygame.KEYDOWN and action_of(event) is Action.FULLSCREEN:
             self._act(Action.FULLSCREEN)  # wherever the keyboard is
-        elif any(part.handle(event) for part in stage.parts_now()) or self.pages.handle(event):
+        elif (
+            any(part.handle(event) for part in stage.parts_now())
+            or self.pages.handle(event)
+            or self._typed_ahead(event)
+        ):
             pass
         elif event.type == pygame.KEYDOWN:
             self._act(action_of(event))
@@ -335,6 +339,13 @@ class App:
         elif event.type not in (pygame.WINDOWEXPOSED, pygame.WINDOWFOCUSGAINED):
             return
         stage.dirty = True
+
+    def _typed_ahead(self, event: pygame.event.Event) -> bool:
+        """What is written into a question before its scene is there to be seen is no key of the window's."""
+        stage, asking = self.stage, self.guide.asking
+        pages = stage.show_menu or stage.show_help or stage.show_explore
+        typing = event.type in (pygame.KEYDOWN, pygame.TEXTINPUT, pygame.TEXTEDITING)
+        return typing and asking.on and not pages and asking.handle(event)
 
     def _act(self, action: Action | None) -> None:
         if action is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import dataclass
 
 import numpy as np
 import pygame
@@ -10,12 +10,12 @@ import pygame
 from sandbox.draw.pages.tour_card import FIELD, OPTION, Field
 from sandbox.draw.painter import Painter
 from sandbox.draw.sketch import COLUMNS, Beside, Sketch, draw_sketch
-from sandbox.draw.widgets.scale import shown, typed
+from sandbox.draw.widgets.scale import shown
 from sandbox.lessons.answers import Given
 from sandbox.lessons.lesson import Predict
 from sandbox.window.canvas.arrows import WAYS
 from sandbox.window.keys import Action
-from sandbox.window.panel.line_edit import Edit
+from sandbox.window.number_field import NumberField
 from sandbox.window.parts import Silent
 from sandbox.window.sketched import beside
 from sandbox.window.stage import Stage
@@ -24,7 +24,16 @@ from sandbox.words import words
 SKETCH = "tour/sketch"  # where the keyboard is while it draws
 UP_STEP = 1.0 / 40.0  # of the plot's height, a press of an arrow key
 MOVES = frozenset((*WAYS, Action.PROTOCOL, Action.STEP, Action.PAUSE, Action.FORWARD))
-LONGEST = 12  # signs of a number
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """A question that was put aside, with what was answered so far."""
+
+    predict: Predict | None  # None: it was answered, and a sketch lies over the plot
+    chosen: int | None
+    number: NumberField
+    sketch: Sketch | None
 
 
 class Asking(Silent):
@@ -34,8 +43,9 @@ class Asking(Silent):
         self.stage = stage
         self.predict: Predict | None = None  # that waits for an answer
         self.chosen: int | None = None
-        self.edit = Edit.of(FIELD, "")
+        self.number = NumberField()
         self.sketch: Sketch | None = None
+        self._refused = ""  # what was handed over and could not be read
         self._last: tuple[float, float] | None = None  # of the stroke under way
         self._drawing = False
 
@@ -46,14 +56,26 @@ class Asking(Silent):
 
     def begin(self, predict: Predict) -> None:
         """Ask."""
+        sketch = Sketch(predict.axes) if predict.kind == "sketch" else None
+        self.take_up(Open(predict, None, NumberField(predict.unit), sketch))
+
+    def take_up(self, question: Open) -> None:
+        """Ask where it was left."""
         self.forget()
-        self.predict = predict
-        if predict.kind == "sketch":
-            self.sketch = Sketch(predict.axes)
-            self.stage.renderer.plot_least = predict.axes
-        stops = self.stops()
-        self.stage.focus.go(stops[0], self.stage.focus.shown)
-        self.stage.panes.hold()
+        self.predict, self.chosen = question.predict, question.chosen
+        self.number, self.sketch = question.number, question.sketch
+        if self.sketch is not None:
+            self.stage.renderer.plot_least = self.sketch.axes
+        if self.predict is not None:
+            # The ring says where the keyboard is: what is asked can be answered at once.
+            self.stage.focus.go(self.stops()[self.chosen or 0], True)
+            self.stage.panes.hold()
+
+    def put_aside(self) -> Open:
+        """Ask no more for now; what was answered so far."""
+        question = Open(self.predict, self.chosen, self.number, self.sketch)
+        self.forget()
+        return question
 
     def end(self) -> None:
         """No more of the question; go on. A sketch stays."""
@@ -69,7 +91,7 @@ class Asking(Silent):
     def forget(self) -> None:
         """Another step begins: nothing is asked, and nothing lies over the plot."""
         self.end()
-        self.chosen, self.edit, self.sketch = None, Edit.of(FIELD, ""), None
+        self.chosen, self.number, self.sketch, self._refused = None, NumberField(), None, ""
         self.stage.renderer.plot_least = None
 
     @property
@@ -80,15 +102,21 @@ class Asking(Silent):
         if self.predict.kind == "choice":
             return None if self.chosen is None else float(self.chosen)
         if self.predict.kind == "number":
-            try:
-                value = float(typed(self.edit.text))
-            except ValueError:
-                return None
-            return value if math.isfinite(value) else None
+            return self.number.value
         if self.sketch is None or not self.sketch.there:
             return None
         drawn = np.isfinite(self.sketch.up)
         return self.sketch.along[drawn], self.sketch.up[drawn]
+
+    @property
+    def unreadable(self) -> bool:
+        """Was something written where a number is asked for, and is none?"""
+        return self.predict is not None and self.number.unreadable
+
+    def refuse_number(self) -> None:
+        """It stays there to be corrected, and the card says so."""
+        self._refused = self.number.text
+        self.stage.focus.go(FIELD, True)
 
     @property
     def field(self) -> Field | None:
@@ -96,11 +124,14 @@ class Asking(Silent):
         if self.predict is None or self.predict.kind != "number":
             return None
         typing = self.stage.focus.name == FIELD
-        return Field(self.edit.text, self.predict.unit, self.edit.caret if typing else None)
+        edit = self.number.edit
+        return Field(edit.text, self.predict.unit, edit.caret if typing else None)
 
     @property
     def hint(self) -> str:
-        """How to answer."""
+        """How to answer; what is wrong with what was written."""
+        if self._refused and self._refused == self.number.text:
+            return words.ASK_UNREADABLE.format(text=self._refused.strip())
         if self.predict is None or self.predict.kind != "sketch":
             return ""
         return words.ASK_SKETCH if self.stage.renderer.plot_box is not None else words.ASK_NO_PLOT
@@ -140,11 +171,9 @@ class Asking(Silent):
         if event.type == pygame.KEYDOWN:
             return self._key(event)
         if event.type in (pygame.TEXTINPUT, pygame.TEXTEDITING) and self.stage.focus.name == FIELD:
-            if event.type == pygame.TEXTINPUT:
-                self.edit.write(event.text)
-                self.edit.text = self.edit.text[:LONGEST]
-                self.edit.caret = self.edit.anchor = min(self.edit.caret, LONGEST)
-                self.stage.redraw(True)
+            if event.type == pygame.TEXTINPUT and not self.number.write(event.text):
+                self.stage.toast(words.ASK_DIGITS)
+            self.stage.redraw(True)
             return True
         if event.type == pygame.MOUSEMOTION and self._drawing:
             self._draw_at(event.pos)
@@ -176,7 +205,8 @@ class Asking(Silent):
     def _key(self, event: pygame.event.Event) -> bool:
         name, key = self.stage.focus.name, event.key
         if name == FIELD:
-            return self._type(event)
+            self.stage.redraw(True)
+            return self.number.key(event)
         if name == SKETCH and self.sketch is not None:
             if key in (pygame.K_BACKSPACE, pygame.K_DELETE):
                 self.sketch.up[:] = np.nan
@@ -200,14 +230,6 @@ class Asking(Silent):
             self.choose(key - pygame.K_1)
         else:
             return False
-        self.stage.redraw(True)
-        return True
-
-    def _type(self, event: pygame.event.Event) -> bool:
-        """A number is typed; Enter, Tab and Escape are for others."""
-        if event.key in (pygame.K_RETURN, pygame.K_KP_ENTER, pygame.K_TAB, pygame.K_ESCAPE):
-            return False
-        self.edit.key(event)
         self.stage.redraw(True)
         return True
 
@@ -266,10 +288,18 @@ class Asking(Silent):
         return pygame.SYSTEM_CURSOR_CROSSHAIR if over else None
 
 
-def said(predict: Predict, given: Given) -> str:
+def told(predict: Predict, given: Given | None) -> str:
+    """What was answered, and what is right, where anything is; then what the lesson says to it."""
+    parts = [words.ASK_SAID.format(given=_said(predict, given))] if isinstance(given, float) else []
+    if isinstance(given, float) and predict.is_right(given):
+        parts.append(words.ASK_RIGHT)
+    elif predict.right is not None:
+        parts.append(words.ASK_RATHER.format(right=_said(predict, predict.right)))
+    return " ".join(part for part in (*parts, str(predict.answer)) if part)
+
+
+def _said(predict: Predict, given: float) -> str:
     """An answer in words."""
-    if not isinstance(given, float):
-        return ""
     if predict.kind == "choice":
-        return str(predict.options[round(given)])
+        return words.ASK_QUOTED.format(text=str(predict.options[round(given)]))
     return f"{shown(given)} {predict.unit}".strip()

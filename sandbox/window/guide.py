@@ -1,6 +1,6 @@
 """A guided tour or a lesson in the window: a card that asks, waits until it is done, and explains.
 
-It stands above the panel, or where the panel would be: it covers nothing of what it speaks of.
+It can be put aside, and be gone on with from the very step.
 """
 
 from __future__ import annotations
@@ -8,34 +8,21 @@ from __future__ import annotations
 import pygame
 
 from core.errors import InputError
-from sandbox.draw.pages.tour_card import (
-    BACK,
-    CLOSE,
-    FIELD,
-    NEXT,
-    OPTION,
-    CardLayout,
-    TourPage,
-    card_layout,
-    draw_tour_card,
-    fitting_type,
-)
+from sandbox.draw.pages.tour_card import BACK, CLOSE, FIELD, NEXT, OPTION, TourPage
 from sandbox.draw.painter import Painter
-from sandbox.draw.text import Type
 from sandbox.lessons import tours
 from sandbox.lessons.answers import Answers, Given
 from sandbox.lessons.lesson import Lesson, Step
 from sandbox.lessons.moments import Moment, met
-from sandbox.window.asking import Asking, said
+from sandbox.window.asking import Asking, told
+from sandbox.window.card import Card
+from sandbox.window.focus import CANVAS
 from sandbox.window.keys import Action
 from sandbox.window.parts import Silent
+from sandbox.window.shelf import Aside, Shelf
 from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes.text import message
-
-WIDTH = 352.0  # of the card where there is no panel, at scale 1 [px]
-MARGIN = 10.0  # round it, at scale 1 [px]
-LEAST_PANEL = 180.0  # a panel under the card is at least so high at scale 1 [px]
 
 
 class Guide(Silent):
@@ -51,9 +38,9 @@ class Guide(Silent):
         self.told = False  # explained before it is done, as somebody wished
         self._given: Given | None = None  # what was predicted in this step
         self._then: Moment | None = None  # what there was when the step began
+        self.card = Card(stage)
+        self.shelf = Shelf(stage)
         self._hover = ""
-        self._fitted: tuple[object, Type] | None = None
-        self._measured: tuple[object, CardLayout] | None = None
 
     @property
     def on(self) -> bool:
@@ -82,47 +69,101 @@ class Guide(Silent):
             self.begin(found)
 
     def begin(self, lesson: Lesson) -> None:
-        """Begin a lesson."""
+        """Begin a lesson; another one that is on is put aside."""
+        self._shelve()
+        self.shelf.forget(lesson)
         self.lesson = lesson
         self.stage.has_begun()
         self._go(0)
 
     def close(self) -> None:
         """No more of it."""
+        self._leave_step()
         self.asking.forget()
-        self.lesson, self._hover = None, ""
+        self.lesson, self._hover, self.done, self.told = None, "", False, False
         if self.stage.focus.name in (NEXT, BACK, CLOSE):
             self.stage.focus.leave()
+        self.stage.redraw(True)
+
+    def put_aside(self) -> None:
+        """No more of it for now: the key of tours brings it back as it is, which is said."""
+        if self.lesson is not None:
+            said = words.TOUR_ASIDE if tours.is_tour(self.lesson) else words.LESSON_ASIDE
+            self._shelve()
+            self.stage.toast(said)
+
+    def leave(self) -> None:
+        """Something else is to run. A lesson is put aside; a tour waits in its own scene."""
+        if self.lesson is not None and tours.is_tour(self.lesson):
+            self._shelve()
+        else:
+            self.put_aside()
+
+    def _shelve(self) -> None:
+        if self.lesson is not None:
+            aside = Aside(
+                lesson=self.lesson,
+                index=self.index,
+                done=self.done,
+                told=self.told,
+                given=self._given,
+                question=self.asking.put_aside(),
+                then=self._then,
+                view=self.stage.renderer.view.name,
+                runs=self.shelf.runs,
+            )
+            self.shelf.put(aside)
+            self.close()
+
+    def take_up(self, aside: Aside) -> None:
+        """Go on with what was put aside, at that step and with what was answered."""
+        self._shelve()
+        self.shelf.forget(aside.lesson)
+        self.lesson, self.index, self._given = aside.lesson, aside.index, aside.given
+        self.done, self.told, self._then = aside.done, aside.told, aside.then
+        if aside.runs != self.shelf.runs or self.stage.panes.scene != self.scene:
+            self._then = None
+            if not self._begin():
+                return
+        self.stage.renderer.set_view(aside.view)
+        self.asking.take_up(aside.question)
+        if not self.asking.on:
+            self._to_what_is_next()
         self.stage.redraw(True)
 
     def next(self) -> None:
         """The explanation, if it is not shown yet; else the next step; after the last the end."""
         page = self.page
-        if self.asking.on:
+        if self.asking.unreadable:
+            self.asking.refuse_number()
+        elif self.asking.on:
             self._keep()
         elif page.do and not page.why and self._explains:
             self.told = True
         elif not self._last:
             self._go(self.index + 1)
         else:
-            over = (
-                words.LESSON_OVER
-                if self.lesson is not None and self.lesson.title
-                else words.TOUR_OVER
-            )
+            assert self.lesson is not None
+            over = words.TOUR_OVER if tours.is_tour(self.lesson) else words.LESSON_OVER
             self.close()
             self.stage.toast(over)
         self.stage.redraw(True)
 
     def _keep(self) -> None:
-        """What was answered is kept, if anything was; now it can be tried."""
+        """What was answered is kept, also that nothing was; now it can be tried."""
         assert self.lesson is not None
         self._given = self.asking.given
-        if self._given is not None:
-            self.answers.predicted(self.lesson, self.step, self._given)
-            self._tell_trouble()
+        self.answers.predicted(self.lesson, self.step, self._given)
+        self._tell_trouble()
         self.asking.end()
         self._then, self.done = None, self.step.until is None
+        self._to_what_is_next()
+
+    def _to_what_is_next(self) -> None:
+        """The keyboard goes where something is to be done: to the handle that is to move, or to the grains."""
+        until = self.step.until
+        handle = "" if until is None or not until.moved else f"/{until.moved}"
+        self.stage.focus.go(f"{CANVAS}{handle}", self.stage.focus.shown)
 
     def _tell_trouble(self) -> None:
         if self.answers.trouble:
@@ -136,7 +177,9 @@ class Guide(Silent):
     @property
     def _explains(self) -> bool:
         """Is there anything to explain in this step?"""
-        return bool(self.step.why or (self.step.predict is not None and self.step.predict.answer))
+        predict = self.step.predict
+        answer = predict is not None and (predict.answer or predict.right is not None)
+        return bool(self.step.why or answer)
 
     @property
     def _last(self) -> bool:
@@ -148,28 +191,32 @@ class Guide(Silent):
         if self.index:
             self._go(self.index - 1)
 
+    def _leave_step(self) -> None:
+        """Whoever answers it again has seen what is right."""
+        if self.lesson is not None and (self.done or self.told):
+            self.answers.shown(self.lesson, self.step)
+
     def _go(self, index: int) -> None:
+        self._leave_step()
         self.asking.forget()
         self.index, self.done, self.told, self._then = index, False, False, None
         self._given = None
         step = self.step
         # Back over the beginning of another scene: that of the steps before begins anew.
-        if step.packings or self.stage.panes.scene != self.scene:
-            try:
-                self._begin()
-            except InputError as error:
-                self.close()
-                self.stage.toast(words.say(message(error)))
-                return
+        anew = bool(step.packings) or self.stage.panes.scene != self.scene
+        if anew and not self._begin():
+            return
         if step.view:
             self.stage.renderer.set_view(step.view)
+        self.done = step.until is None and step.predict is None
         if step.predict is not None:
             self.asking.begin(step.predict)
-        self.done = step.until is None and step.predict is None
+        else:
+            self._to_what_is_next()
         self.stage.redraw(True)
 
-    def _begin(self) -> None:
-        """What the present step begins, or the last one before it that does."""
+    def _begin(self) -> bool:
+        """What the present step begins, or the last one before it that does; False if that cannot be, which is said."""
         assert self.lesson is not None
         begun = self.lesson.steps[: self.index + 1]
         step = next(step for step in reversed(begun) if step.packings)
@@ -177,17 +224,23 @@ class Guide(Silent):
         if not several:
             self.stage.panes.packing = step.packings[0]
         packings = step.packings if several else ()
-        self.stage.start(self.scene, step.settings, packings, self.lesson.seed)
+        try:
+            self.stage.start(self.scene, step.settings, packings, self.lesson.seed)
+        except InputError as error:
+            self.close()
+            self.stage.toast(words.say(message(error)))
+            return False
+        return True
 
     def tick(self, now: float) -> bool:
         """Has it been done? And the card is to have its place."""
         del now
-        self.stage.arrange(card=self.wanted)
+        self.stage.arrange(card=self.card.width if self.on else 0)
         if not self.on:
             return False
         run = self.stage.panes
         if run.scene != self.scene:
-            self.close()
+            self.leave()
             return True
         if self.asking.on:
             run.hold()  # a page that was closed may have let it go on
@@ -208,11 +261,13 @@ class Guide(Silent):
     # -- what a person does --
 
     def act(self, action: Action) -> bool:
-        """The key of tours begins one, or ends it."""
+        """The key of tours begins one, puts it aside, or goes on with what was put aside."""
         if action is not Action.TOUR:
             return False
         if self.on:
-            self.close()
+            self.put_aside()
+        elif (aside := self.shelf.latest) is not None:
+            self.take_up(aside)
         else:
             self.start(self.stage.panes.scene)
         return True
@@ -229,7 +284,7 @@ class Guide(Silent):
             return False
         if self.stage.mouse.holding:
             return False
-        self._hover = self._button_at(event.pos)
+        self._hover = self.card.button_at(self.page, event.pos)
         inside = self.rect.collidepoint(event.pos)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._hover:
             self.press(self._hover)
@@ -251,8 +306,17 @@ class Guide(Silent):
         at_question = name in (NEXT, CLOSE) and focus.name in self.asking.stops()
         if not name or not (focus.on_canvas or at_question):
             return False
-        self.press(name)
+        if name == NEXT and self._gives_away:
+            self.stage.toast(words.ASK_TRY.format(why=words.TOUR_WHY))
+        else:
+            self.press(name)
         return True
+
+    @property
+    def _gives_away(self) -> bool:
+        """Would going on tell the answer before it has been tried? One Enter too many is not to do that."""
+        asked = self.step.predict is not None and not self.asking.on
+        return asked and not (self.done or self.told)
 
     def press(self, name: str) -> None:
         """A button, an option, or the field of a number."""
@@ -261,7 +325,7 @@ class Guide(Silent):
         elif name == FIELD:
             self.stage.focus.go(FIELD, False)
         else:
-            {NEXT: self.next, BACK: self.back, CLOSE: self.close}[name]()
+            {NEXT: self.next, BACK: self.back, CLOSE: self.put_aside}[name]()
 
     @property
     def titles(self) -> dict[str, str]:
@@ -283,14 +347,6 @@ class Guide(Silent):
             return None
         return pygame.SYSTEM_CURSOR_HAND if self._hover else pygame.SYSTEM_CURSOR_ARROW
 
-    def _button_at(self, place: tuple[int, int]) -> str:
-        rect = self.rect
-        buttons = self._layout(rect.width).buttons
-        for name, button in buttons.items():
-            if button.move(rect.topleft).collidepoint(place):
-                return name
-        return ""
-
     # -- where it is, and what it says --
 
     @property
@@ -300,7 +356,8 @@ class Guide(Silent):
         scene, step = self.scene, self.step
         predict, asking = step.predict, self.asking
         if asking.on and predict is not None:
-            onward = words.ASK_WITHOUT if asking.given is None else words.ASK_KEEP
+            nothing = asking.given is None and not asking.unreadable
+            onward = words.ASK_WITHOUT if nothing else words.ASK_KEEP
             return TourPage(
                 title=str(self.lesson.title) or words.title(scene) or scene,
                 step=self.index,
@@ -316,9 +373,7 @@ class Guide(Silent):
             )
         do, why = str(step.do), self._why(step)
         waiting = bool(do and why and not self.done and not self.told)
-        if not self.done:
-            # What has not happened yet is not said as if it had.
-            why = words.TOUR_AHEAD.format(why=why) if self.told else ""
+        why = why if self.done or self.told else ""
         onward = words.TOUR_WHY if waiting else words.TOUR_END if self._last else words.TOUR_NEXT
         return TourPage(
             title=str(self.lesson.title) or words.title(scene) or scene,
@@ -333,18 +388,11 @@ class Guide(Silent):
 
     def _why(self, step: Step) -> str:
         """What explains a step, after what was predicted in it."""
-        predict, given = step.predict, self._given
-        parts = []
-        if predict is not None and isinstance(given, float):
-            verdict = predict.is_right(given)
-            parts.append(words.ASK_SAID.format(given=said(predict, given)))
-            if verdict:
-                parts.append(words.ASK_RIGHT)
-            elif verdict is False and predict.right is not None:
-                parts.append(words.ASK_RATHER.format(right=said(predict, predict.right)))
-        if predict is not None:
-            parts.append(str(predict.answer))
-        return " ".join(part for part in (*parts, str(step.why)) if part)
+        answer = "" if step.predict is None else told(step.predict, self._given)
+        why = str(step.why)
+        if why and not self.done:  # what has not happened yet is not said as if it had
+            why = words.TOUR_AHEAD.format(why=why)
+        return " ".join(part for part in (answer, why) if part)
 
     @property
     def seen(self) -> bool:
@@ -354,60 +402,16 @@ class Guide(Silent):
     @property
     def taken(self) -> int:
         """How much of the panel's height the card takes, margins included [px]."""
-        layout = self.stage.renderer.layout
-        if not self.on or not layout.panel.width:
+        if not self.on or not self.stage.renderer.layout.panel.width:
             return 0
-        return self.rect.height + 2 * self._margin
+        return self.rect.height + 2 * self.card.margin
 
     @property
     def rect(self) -> pygame.Rect:
         """Where the card is in the window [px]."""
-        column, margin = self._column, self._margin
-        width = max(column.width - 2 * margin, 1)
-        height = min(self._layout(width).height, column.height - 2 * margin)
-        return pygame.Rect(column.left + margin, column.top + margin, width, max(height, 1))
-
-    @property
-    def _column(self) -> pygame.Rect:
-        """At the top of the panel, or in a column of its own in the panel's stead: it covers nothing of the canvases."""
-        layout = self.stage.renderer.layout
-        return layout.panel if layout.panel.width else layout.card
-
-    @property
-    def wanted(self) -> int:
-        """How wide a column the card is to have where there is no panel [px]."""
-        return round((WIDTH + 2.0 * MARGIN) * self.stage.renderer.scale) if self.on else 0
-
-    @property
-    def _type(self) -> Type:
-        """The type on the card: smaller than elsewhere where it would not fit, or leave nothing of the panel."""
-        own, column = self.stage.renderer.type, self._column
-        least = LEAST_PANEL * own.scale if self.stage.renderer.layout.panel.width else 0.0
-        key = (self.page, column.size, own)
-        if self._fitted is None or self._fitted[0] != key:
-            width, height = column.width - 2 * self._margin, column.height - 2 * self._margin
-            self._fitted = key, fitting_type(self.page, own, width, round(height - least))
-        return self._fitted[1]
-
-    @property
-    def _margin(self) -> int:
-        return round(MARGIN * self.stage.renderer.scale)
-
-    def _layout(self, width: int) -> CardLayout:
-        """The card at that width [px]; measured again only when it has changed."""
-        page, type_ = self.page, self._type
-        key = (page, width, type_.scale)
-        if self._measured is None or self._measured[0] != key:
-            self._measured = key, card_layout(page, type_, width)
-        return self._measured[1]
+        return self.card.rect(self.page)
 
     def draw(self, painter: Painter) -> None:
         """The card."""
-        if not self.seen:
-            return
-        own = painter
-        if self._type is not painter.type:
-            painter.flush()
-            own = Painter(painter.surface, painter.theme, self._type)
-        draw_tour_card(own, self.rect, self.page, focus=self.stage.focus.ring, hover=self._hover)
-        own.flush()
+        if self.seen:
+            self.card.draw(painter, self.page, self._hover)

@@ -161,14 +161,14 @@ class Pages:
         if choice.packing is not None:
             self.stage.panes.packing = choice.packing
         elif choice.scene is not None:
-            self.guide.close()
+            self.guide.leave()
             self.stage.start(choice.scene)
         elif choice.tour is not None:
             self.guide.start(choice.tour)
         elif choice.lesson is not None:
             self.guide.begin(classroom.named(choice.lesson))
         elif choice.file is not None:
-            self.guide.close()
+            self.guide.leave()
             self.stage.open(choice.file)
         elif choice.what == START:
             self.guide.start(START_SCENE)
@@ -179,7 +179,7 @@ class Pages:
         leftover = self._left.pop(0)
         self._tell()
         if wanted:
-            self.guide.close()
+            self.guide.leave()
             self.stage.take_up(leftover)
         else:
             leftover.remove()

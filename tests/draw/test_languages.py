@@ -20,7 +20,7 @@ from sandbox.draw.widgets.controls import Slider, arranged
 from sandbox.draw.widgets.look import Attention, draw_control
 from sandbox.lessons import classroom, tours
 from sandbox.lessons.lesson import Lesson
-from sandbox.window.guide import MARGIN, WIDTH
+from sandbox.window.card import MARGIN, WIDTH
 from sandbox.window.menu import Menu
 from sandbox.words import language, words
 from scenes import registry

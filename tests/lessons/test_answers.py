@@ -12,6 +12,7 @@ import pytest
 
 from core.errors import InputError
 from sandbox.cli.main import main
+from sandbox.lessons import answers as answers_of
 from sandbox.lessons.answers import COLUMNS, Answers, at_columns, mean_distance
 from sandbox.lessons.lesson import Lesson, Predict, Said, Step
 from tests.draw.frames import intruder_frame
@@ -39,17 +40,52 @@ def test_a_row_for_each_prediction(tmp_path: Path) -> None:
     )
     answers.measured(LESSON, SKETCH, (along, up), [frame])
     answers.measured(LESSON, NUMBER, 3.25, [frame])  # nothing: it says itself what is right
+    for step in (CHOICE, NUMBER, SKETCH):
+        answers.predicted(LESSON, step, None)
     found = rows(tmp_path / "all.csv")
     assert [(row["step"], row["what"], row["given"], row["right"]) for row in found] == [
         ("pick", "predicted", "1", "no"),
         ("guess", "predicted", "3.25", "yes"),
         ("draw", "predicted", "0:0 0.5:0.25 1:0.5", ""),
         ("draw", "measured", "0:0 0.5:1", ""),
+        ("pick", "no guess", "", ""),
+        ("guess", "no guess", "", ""),
+        ("draw", "no guess", "", ""),
     ]
     assert {tuple(row) for row in found} == {COLUMNS}
     for row in found:
         assert re.fullmatch(r"\d{4}-\d\d-\d\d", row["date"])
         assert not any(cell.startswith(("=", "+", "-", "@")) for cell in row.values())
+
+
+def test_a_row_says_whether_the_answer_had_been_shown(tmp_path: Path) -> None:
+    """Of this step, in this sitting: another one has not seen it."""
+    answers, others = Answers(tmp_path / "all.csv"), Answers(tmp_path / "all.csv")
+    answers.predicted(LESSON, CHOICE, None)
+    answers.shown(LESSON, CHOICE)
+    answers.predicted(LESSON, CHOICE, 1.0)
+    answers.predicted(LESSON, CHOICE, None)
+    answers.predicted(LESSON, NUMBER, 3.0)
+    others.predicted(LESSON, CHOICE, 1.0)
+    found = [(row["step"], row["what"], row["when"]) for row in rows(tmp_path / "all.csv")]
+    assert found == [
+        ("pick", "no guess", "before"),
+        ("pick", "predicted", "after"),
+        ("pick", "no guess", "after"),
+        ("guess", "predicted", "before"),
+        ("pick", "predicted", "before"),
+    ]
+
+
+def test_columns_are_described() -> None:
+    """In the room's README, and what can stand in them."""
+    text = (Path(answers_of.__file__).parent / "README.md").read_text(encoding="utf-8")
+    table = [line for line in text.splitlines() if line.startswith("| `")]
+    named = [name for line in table for name in re.findall(r"`([a-z]+)`", line.split("|")[1])]
+    at = named.index(COLUMNS[0])
+    assert tuple(named[at : at + len(COLUMNS)]) == COLUMNS
+    for value in ("predicted", "no guess", "measured", "before", "after", "yes", "no"):
+        assert f"`{value}`" in text
 
 
 def test_sittings_are_told_apart_and_files_go_on(tmp_path: Path) -> None:

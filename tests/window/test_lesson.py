@@ -10,12 +10,14 @@ import numpy as np
 import pygame
 import pytest
 
-from sandbox.draw.pages.tour_card import FIELD, NEXT, OPTION
+from sandbox.draw.pages.tour_card import NEXT, OPTION
+from sandbox.lessons import classroom
 from sandbox.lessons.answers import Answers
 from sandbox.lessons.reading import parse_lesson
-from sandbox.window.asking import SKETCH
+from sandbox.session.commands import Move
+from sandbox.window.asking import SKETCH, told
 from sandbox.window.guide import Guide
-from sandbox.words import words
+from sandbox.words import language, words
 from tests.window.desk import Desk
 
 TEXT = """
@@ -76,7 +78,12 @@ def ready(desk: Desk) -> None:
 
 def button(desk: Desk, name: str) -> tuple[int, int]:
     guide = desk.app.guide
-    return guide._layout(guide.rect.width).buttons[name].move(guide.rect.topleft).center
+    return (
+        guide.card.layout(guide.page, guide.rect.width)
+        .buttons[name]
+        .move(guide.rect.topleft)
+        .center
+    )
 
 
 def rows(tmp_path: Path) -> list[dict[str, str]]:
@@ -118,8 +125,79 @@ def test_a_choice_by_keyboard_then_it_is_tried_and_told(desk: Desk, tmp_path: Pa
     ]
     assert focus.on_canvas
     drag_handle(desk, 3.0)
-    why = "You said: this. It is: that. That, as everybody knows."
+    why = "You said: “this”. The answer: “that”. That, as everybody knows."
     assert guide.page.why == why
+
+
+def test_one_enter_too_many_gives_nothing_away(desk: Desk) -> None:
+    """Wherever the guess was handed over, keys lead the hand then, and the answer waits for who asks for it."""
+    guide, focus = desk.app.guide, desk.app.stage.focus
+    assert focus.ring == f"{OPTION}0"  # it can be seen where the keyboard is
+    while focus.name != NEXT:
+        desk.key(pygame.K_TAB)
+    for _ in range(4):
+        desk.key(pygame.K_RETURN, "\r")
+        assert (guide.asking.on, guide.told, guide.page.why) == (False, False, "")
+        assert focus.ring == "canvas/intruder"
+    assert desk.app.stage.notices.latest == words.ASK_TRY.format(why=words.TOUR_WHY)
+    desk.key(pygame.K_RIGHT)
+    desk.until(lambda: any(isinstance(command, Move) for command in desk.session.commands))
+    while focus.name != NEXT:
+        desk.key(pygame.K_TAB)
+    desk.key(pygame.K_RETURN, "\r")
+    assert guide.told
+    assert guide.page.why == "The answer: “that”. That, as everybody knows."
+
+
+def test_every_answer_leaves_a_row_and_says_whether_it_had_been_shown(
+    desk: Desk, tmp_path: Path
+) -> None:
+    guide = to_step(desk, 1)
+    guide.press(NEXT)  # no guess
+    guide.back()
+    desk.key(pygame.K_RETURN, "\r")  # an option
+    desk.key(pygame.K_RETURN, "\r")
+    guide.press(NEXT)  # why?
+    guide.press(NEXT)  # the next step
+    desk.type("3")
+    desk.key(pygame.K_RETURN, "\r")
+    guide.back()
+    guide.press(NEXT)
+    guide.close()
+    guide.begin(parse_lesson("mine", TEXT.encode(), ""))  # the same sitting
+    ready(desk)
+    guide.press(NEXT)
+    told = [(row["step"], row["what"], row["given"], row["when"]) for row in rows(tmp_path)]
+    assert told == [
+        ("guess", "no guess", "", "before"),
+        ("pick", "predicted", "1", "before"),
+        ("guess", "predicted", "3", "after"),
+        ("pick", "no guess", "", "after"),
+        ("pick", "no guess", "", "after"),
+    ]
+
+
+LESSONS = [(name, code) for name in classroom.names() for code in ("en", "de")]
+
+
+@pytest.mark.parametrize(("name", "code"), LESSONS)
+def test_the_answer_is_stated_whatever_was_guessed(name: str, code: str) -> None:
+    """Before it was tried or after, and what is told reads from the guess to the reason."""
+    language.use(code)
+    for step in classroom.lesson(name).steps:
+        predict = step.predict
+        if predict is None or predict.right is None:
+            continue
+        wrong = predict.right + (-1.0 if predict.right else 1.0) * (1.0 + predict.within)
+        right = f"{predict.right:g}".replace(".", words.decimal_sign())
+        if predict.kind == "choice":
+            right = str(predict.options[round(predict.right)])
+        for given in (None, predict.right, wrong):
+            text = told(predict, given)
+            assert (words.ASK_RIGHT in text) == (given == predict.right)
+            assert right in text
+            assert ".." not in text
+            assert text.endswith(str(predict.answer))
 
 
 def test_a_choice_by_mouse(desk: Desk, tmp_path: Path) -> None:
@@ -147,26 +225,12 @@ def test_nothing_moves_before_the_guess(desk: Desk) -> None:
     assert (guide.asking.on, desk.paused()) == (False, False)
 
 
-def test_closing_lets_go(desk: Desk, tmp_path: Path) -> None:
+def test_what_is_put_aside_lets_go(desk: Desk, tmp_path: Path) -> None:
     desk.key(pygame.K_ESCAPE)
     assert not desk.app.guide.on
     assert not desk.paused()
     assert rows(tmp_path) == []
-
-
-def test_a_number_is_typed(desk: Desk, tmp_path: Path) -> None:
-    guide = to_step(desk, 1)
-    assert desk.app.stage.focus.name == FIELD
-    desk.type("x")
-    assert guide.page.onward == words.ASK_WITHOUT  # that is no number
-    desk.key(pygame.K_BACKSPACE)
-    desk.type("3,4")
-    assert guide.page.field is not None
-    assert (guide.page.field.text, guide.page.field.unit) == ("3,4", "k R")
-    desk.key(pygame.K_RETURN, "\r")
-    assert guide.done
-    assert guide.page.why == f"You said: 3.4 k R. {words.ASK_RIGHT}"
-    assert rows(tmp_path)[0]["given"] == "3.4"
+    assert desk.app.stage.notices.latest == words.LESSON_ASIDE
 
 
 def test_a_sketch_by_mouse_stays_over_the_curve(desk: Desk, tmp_path: Path) -> None:

@@ -36,7 +36,7 @@ def ready(desk: Desk) -> None:
 
 def press(desk: Desk, name: str) -> None:
     guide = desk.app.guide
-    button = guide._layout(guide.rect.width).buttons[name].move(guide.rect.topleft)
+    button = guide.card.layout(guide.page, guide.rect.width).buttons[name].move(guide.rect.topleft)
     desk.press(button.center)
     desk.release(button.center)
 
@@ -164,7 +164,9 @@ def test_the_card_hides_nothing_and_stays_in_the_window(touring: Desk, folded: b
         assert not any(guide.rect.colliderect(canvas) for canvas in places.canvases)
         assert not guide.rect.colliderect(app.panel.rect)
         assert (places.panel if places.panel.width else places.card).contains(guide.rect)
-        assert guide.rect.height == guide._layout(guide.rect.width).height  # nothing is cut off
+        assert (
+            guide.rect.height == guide.card.layout(guide.page, guide.rect.width).height
+        )  # nothing is cut off
         guide.next()
         ready(touring)
 

@@ -209,9 +209,7 @@ class Tree:
 
     def _fill(self, value: object) -> None:
         """The number that a lesson asks for."""
-        edit = self._parts.guide.asking.edit
-        edit.select_all()
-        edit.write(str(value))
+        self._parts.guide.asking.number.fill(str(value))
 
     def _canvas(self, frames: list[Frame]) -> None:
         """What runs: all that is read off it; and the handles, for the arrow keys and as sliders."""

@@ -74,7 +74,7 @@ class GeneralSection:
             Row(
                 (
                     self._button("menu"),
-                    self._button("tour", on=self.guide.on),
+                    self._tour(),
                     self._button("help"),
                     self._button("fold", sign="›"),
                 ),
@@ -117,6 +117,14 @@ class GeneralSection:
             ),
         ]
         return controls
+
+    def _tour(self) -> Button:
+        """Begins one, or goes on with what was put aside."""
+        aside = None if self.guide.on else self.guide.shelf.latest
+        if aside is None or aside.tour:
+            return self._button("tour", on=self.guide.on)
+        about = words.BUTTONS_HELP["lesson"]
+        return Button("general/tour", words.BUTTONS["lesson"], False, help=about)
 
     def _button(
         self, name: str, *, on: bool | None = None, enabled: bool = True, sign: str = ""
