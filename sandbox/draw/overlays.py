@@ -77,7 +77,9 @@ def draw_chains(
         width *= SLIM["values" if plain else "kinds"]
         ground = np.full(order.size, theme.ground, dtype=np.uint32)
         rim = width + CHAIN_RIM * painter.scale
-        raster.draw_lines(canvas, (x0, y0, x1, y1), rim, ground, alpha[order])
+        seen_through = (alpha[order] < 1.0) | (width < 0.5)
+        hidden = np.where(seen_through, 0.0, width)
+        raster.draw_lines(canvas, (x0, y0, x1, y1), rim, ground, alpha[order], hidden)
     if plain:
         colours = np.full(order.size, theme.text, dtype=np.uint32)
     else:

@@ -38,6 +38,7 @@ def _draw_something() -> None:
     colours = (colour, colour)
     raster.draw_made_grains(canvas, grains, one, 0.0 * one, one, marked, colours, 1.0, 1.0)
     raster.draw_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one)
+    raster.draw_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one, one)
     raster.draw_few_lines(canvas, (one, -one, 2.0 * one, -one), one, colour, one)
     raster.draw_hull(canvas, np.zeros((1, 2)), 1.0, 1, 1, 0.0, 1.0)
     raster.draw_ring(canvas, 4.0, -4.0, 2.0, 1.0, 1, 1.0)

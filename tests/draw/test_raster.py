@@ -117,6 +117,23 @@ def test_line_is_that_of_the_slow_twin(
     assert np.abs(slow.unpacked(pixels) - expected).max() <= LEVELS
 
 
+@settings(max_examples=60, deadline=None)
+@given(ends=st.tuples(*[st.floats(-10, 70)] * 4), half=st.floats(0.5, 9), rim=st.floats(0.1, 4))
+def test_what_is_hidden_under_a_line_is_not_missed(
+    ends: tuple[float, float, float, float], half: float, rim: float
+) -> None:
+    one = tuple(np.array([value]) for value in (ends[0], -ends[1], ends[2], -ends[3]))
+    pictures = []
+    for hidden in ([half], [0.0]):
+        pixels = blank()
+        raster.draw_lines(
+            canvas(pixels), one, np.array([half + rim]), colour(EDGE), np.ones(1), np.array(hidden)
+        )
+        raster.draw_lines(canvas(pixels), one, np.array([half]), colour(FILL), np.ones(1))
+        pictures.append(pixels)
+    assert np.array_equal(pictures[0], pictures[1])
+
+
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 7])
 @pytest.mark.parametrize("radius", [0.0, 1.0, 6.0])
 @pytest.mark.parametrize("way", [1, -1])

@@ -8,7 +8,18 @@ import numpy as np
 
 from core.arrays import Floats
 from core.jit import kernel
-from sandbox.draw.raster.pixels import Canvas, ToScreen, coverage, first_pixel, mix, put, sane, span
+from sandbox.draw.raster.pixels import (
+    SURELY,
+    Canvas,
+    ToScreen,
+    coverage,
+    first_pixel,
+    mix,
+    put,
+    sane,
+    span,
+    strip_in_row,
+)
 
 
 @kernel
@@ -108,6 +119,16 @@ def draw_hull(
             half = math.sqrt(solid * solid - (row + 0.5 - y_low) ** 2)
             plain_low = x_low - half
             plain_high = x_low + half
+        if count == 2:
+            ax = offset_x + scale * corners[0, 0]
+            ay = offset_y - scale * corners[0, 1]
+            ex = scale * (corners[1, 0] - corners[0, 0])
+            ey = -scale * (corners[1, 1] - corners[0, 1])
+            size = math.hypot(ex, ey)
+            if size > 1e-9:
+                along = (ex / size, ey / size)
+                deep = radius - edge_width - SURELY
+                plain_low, plain_high = strip_in_row(row + 0.5 - ay, ax, along, size, deep)
         first = first_pixel(low, left, right)
         last = first_pixel(high, first, right)
         plain0 = last

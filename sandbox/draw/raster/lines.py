@@ -8,7 +8,45 @@ import numpy as np
 
 from core.arrays import Floats
 from core.jit import kernel
-from sandbox.draw.raster.pixels import Canvas, Colours, coverage, first_pixel, put, sane
+from sandbox.draw.raster.pixels import (
+    SURELY,
+    Canvas,
+    Colours,
+    Pixels,
+    coverage,
+    first_pixel,
+    put,
+    sane,
+    span,
+    strip_in_row,
+)
+
+
+@kernel
+def _line_pixel(
+    pixels: Pixels,
+    row: int,
+    column: int,
+    start: tuple[float, float],
+    direction: tuple[float, float],
+    length: float,
+    thick: float,
+    colour: int,
+    strength: float,
+) -> None:
+    """A pixel at or near the edge of a line."""
+    tx, ty = direction
+    dx = column + 0.5 - start[0]
+    dy = row + 0.5 - start[1]
+    along = dx * tx + dy * ty
+    away = abs(dx * ty - dy * tx)
+    if along < 0.0:
+        away = math.sqrt(dx * dx + dy * dy)
+    elif along > length:
+        away = math.sqrt(away * away + (along - length) * (along - length))
+    distance = away - thick
+    if distance < 0.5:
+        put(pixels, row, column, colour, coverage(distance) * strength)
 
 
 @kernel
@@ -18,9 +56,12 @@ def draw_lines(
     half_width: Floats,
     colour: Colours,
     alpha: Floats,
+    hidden: Floats | None = None,
 ) -> None:
     """Straight lines with round ends. half_width: float64 (N,) [px]; colour: uint32 (N,);
     alpha: float64 (N,) in 0..1. A line thinner than a pixel is drawn a pixel wide and fainter.
+
+    hidden: float64 (N,) [px], half the width of what will be drawn over a line and cannot be seen through: that part is left out.
     """
     pixels, clip, to_screen = canvas
     left, top, right, bottom = clip
@@ -61,14 +102,25 @@ def draw_lines(
                 middle = ax + dy * tx / ty
                 low = max(low, middle - reach / abs(ty))
                 high = min(high, middle + reach / abs(ty))
-            for column in range(first_pixel(low, left, right), first_pixel(high, left, right)):
-                dx = column + 0.5 - ax
-                along = min(max(dx * tx + dy * ty, 0.0), length)
-                away_x = dx - along * tx
-                away_y = dy - along * ty
-                distance = math.sqrt(away_x * away_x + away_y * away_y) - thick
-                if distance < 0.5:
-                    put(pixels, row, column, over, coverage(distance) * strength)
+            first = first_pixel(low, left, right)
+            last = first_pixel(high, first, right)
+            plain0, plain1, hidden0, hidden1 = last, last, last, last
+            begin, end = strip_in_row(dy, ax, (tx, ty), length, thick - SURELY)
+            if begin < end:
+                plain0 = first_pixel(begin, first, last)
+                plain1 = first_pixel(end, plain0, last)
+                hidden0, hidden1 = plain1, plain1
+                if hidden is not None:
+                    begin, end = strip_in_row(dy, ax, (tx, ty), length, hidden[i] - SURELY)
+                    if begin < end:
+                        hidden0 = first_pixel(begin, plain0, plain1)
+                        hidden1 = first_pixel(end, hidden0, plain1)
+            for column in range(first, plain0):
+                _line_pixel(pixels, row, column, (ax, ay), (tx, ty), length, thick, over, strength)
+            span(pixels, row, plain0, hidden0, over, strength)
+            span(pixels, row, hidden1, plain1, over, strength)
+            for column in range(plain1, last):
+                _line_pixel(pixels, row, column, (ax, ay), (tx, ty), length, thick, over, strength)
 
 
 @kernel(nogil=False)

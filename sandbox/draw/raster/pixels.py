@@ -18,6 +18,8 @@ ToScreen = tuple[float, float, float]
 Canvas = tuple[Pixels, Clip, ToScreen]
 Grains = tuple[Floats, Floats, Floats, Floats, Floats]  # x, y, p, q1, q2: (N,) [R]
 
+SURELY = 0.501  # [px] inside an outline: a pixel that is covered, however it was rounded
+
 
 @kernel
 def first_pixel(place: float, low: int, high: int) -> int:
@@ -53,6 +55,31 @@ def ring_in_row(
         inner0 = first_pixel(middle - half, first, last)
         inner1 = first_pixel(middle + half, inner0, last)
     return first, last, inner0, inner1
+
+
+@kernel
+def strip_in_row(
+    dy: float, cx: float, direction: tuple[float, float], length: float, half: float
+) -> tuple[float, float]:
+    """From where to where a row lies within ``half`` of a straight line, not beyond its ends [px]; from > to: nowhere.
+
+    dy: of the row from where the line begins; cx: the column there; direction: (2,), a unit vector.
+    """
+    tx, ty = direction
+    low, high = -math.inf, math.inf
+    if half < 0.0:
+        return high, low
+    if abs(ty) > 1e-6:
+        middle, aside = dy * tx / ty, half / abs(ty)
+        low, high = middle - aside, middle + aside
+    elif abs(dy) > half:
+        return high, low
+    if abs(tx) > 1e-6:
+        begin, end = -dy * ty / tx, (length - dy * ty) / tx
+        low, high = max(low, min(begin, end)), min(high, max(begin, end))
+    elif not 0.0 <= dy * ty <= length:
+        return high, low
+    return cx + low, cx + high
 
 
 @kernel
