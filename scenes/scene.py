@@ -246,6 +246,15 @@ class Scene(ABC):
         del settings
         return self.default_steps
 
+    @property
+    def live(self) -> frozenset[str]:
+        """Names of the parameters that act on the grains where they stand; a change of any other builds the packing anew."""
+        return frozenset(p.name for p in self.parameters if p.live)
+
+    def built_from(self, settings: Values) -> Values:
+        """Those that the packing is built from."""
+        return {name: value for name, value in settings.items() if name not in self.live}
+
     def check_packing(self, packing: str) -> str:
         """``packing`` if the scene knows it. Raises InputError otherwise."""
         if packing not in self.packings:

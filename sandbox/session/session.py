@@ -235,7 +235,7 @@ class Session:
         """True for a change that builds the scene anew, which takes a moment. May be called from any thread."""
         if not isinstance(command, Change):
             return False
-        return not any(p.live and p.name == command.name for p in self.scene.parameters)
+        return command.name not in self.scene.live
 
     def _adjust(self, name: str, value: object) -> None:
         """A live parameter acts on the grains where they stand."""

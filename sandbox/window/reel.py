@@ -13,6 +13,8 @@ from sandbox.window.export import free_stem
 from sandbox.window.parts import Silent
 from sandbox.window.stage import Stage
 from sandbox.words import words
+from scenes import registry
+from scenes.scene import Values
 
 MOST = 300  # moments
 MOST_GRAINS = 90_000  # grains times moments: some 25 MB
@@ -26,7 +28,7 @@ class Reel(Silent):
     def __init__(self, stage: Stage) -> None:
         self.stage = stage
         self._thinning = Thinning[Moment](MOST, MOST_GRAINS)
-        self._run: tuple[tuple[str, str, int], ...] = ()
+        self._run: list[tuple[str, str, int, Values]] = []
         self._serials: tuple[int, ...] = ()
 
     def tick(self, now: float) -> bool:
@@ -45,7 +47,7 @@ class Reel(Silent):
             return
         if len({frame.increment for frame in moment}) != 1:
             return
-        run = tuple((frame.scene, frame.packing, frame.seed) for frame in moment)
+        run = [(f.scene, f.packing, f.seed, built_from(f)) for f in moment]
         if run != self._run:
             self._run = run
             self._thinning.clear()
@@ -69,3 +71,8 @@ class Reel(Silent):
         except OSError as error:
             return words.NOT_SAVED.format(name=name, reason=reason_of(error))
         return words.SAVED.format(name=name)
+
+
+def built_from(frame: Frame) -> Values:
+    """The settings that make another run of it."""
+    return registry.get(frame.scene).built_from(frame.settings)

@@ -51,6 +51,18 @@ def test_it_goes_on_from_where_the_run_went_back_to(reel: Reel) -> None:
     assert held(reel) == [7]
 
 
+def test_other_settings_are_another_run_unless_they_act_at_once(reel: Reel) -> None:
+    def made(increment: int, **changed: float) -> Frame:
+        return at(increment, scene="intruder", settings={"grains": 6, "friction": 0.0, **changed})
+
+    for increment in (0, 1, 2):
+        reel.follow([made(increment)])
+    reel.follow([made(3, friction=0.5)])
+    assert held(reel) == [0, 1, 2, 3]
+    reel.follow([made(5, friction=0.5, grains=7)])  # its first increments came between two pictures
+    assert held(reel) == [5]
+
+
 def test_a_long_run_is_thinned_and_keeps_its_ends(reel: Reel) -> None:
     for increment in range(3 * MOST):
         reel.follow([at(increment)])

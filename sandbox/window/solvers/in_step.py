@@ -25,7 +25,7 @@ def begins_anew(scene: str, command: Command) -> bool:
         return isinstance(command, Reset)
     if scene not in registry.names():
         return True
-    return command.name not in {p.name for p in registry.get(scene).parameters if p.live}
+    return command.name not in registry.get(scene).live
 
 
 def way_back(command: Undo | Redo | Recall, frames: Sequence[Frame]) -> Command:
