@@ -1,4 +1,7 @@
-"""All scenes by name. A scene registers itself with ``@register``; to add one, write its file and name it in ``_MODULES``."""
+"""All scenes by name. To add one, write its file, which has its name and puts ``@register`` on it, and name it in ``_NAMES``.
+
+A scene's file is read when the scene is asked for, and no other scene's.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from typing import TypeVar
 from core.errors import InputError, nearest
 from scenes.scene import Scene
 
-_MODULES = (
+_NAMES = (
     "single_grain",
     "two_ellipses",
     "grain_row",
@@ -35,20 +38,14 @@ def register(scene: _S) -> _S:
 
 def names() -> list[str]:
     """Names of all scenes, in the order of the menu."""
-    _load()
-    return list(_SCENES)
+    return list(_NAMES)
 
 
 def get(name: str) -> Scene:
     """The scene of that name. Raises InputError with the closest match."""
-    _load()
-    if name not in _SCENES:
-        close = nearest(name, _SCENES)
-        hint = f"did you mean {close}?" if close else f"there are: {', '.join(_SCENES)}"
+    if name not in _NAMES:
+        close = nearest(name, _NAMES)
+        hint = f"did you mean {close}?" if close else f"there are: {', '.join(_NAMES)}"
         raise InputError(f"no scene is called {name!r}; {hint}")
+    importlib.import_module(f"scenes.{name}")
     return _SCENES[name]
-
-
-def _load() -> None:
-    for module in _MODULES:
-        importlib.import_module(f"scenes.{module}")

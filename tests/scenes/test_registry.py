@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +21,7 @@ from scenes.scene import Scene
 from tests.scenes.told import check_table
 
 INCREMENTS = 15
+REPOSITORY = Path(__file__).parents[2]
 FEWEST = 60  # grains of a scene whose number is a parameter
 # What a scene needs besides, so that so few grains fit.
 SMALL: dict[str, dict[str, object]] = {
@@ -159,3 +164,18 @@ def test_unknown_names() -> None:
         registry.get("single_grian")
     with pytest.raises(InputError, match="did you mean"):
         registry.get("single_grain").settings({"poison_ratio": 0.1})
+
+
+def test_a_scene_is_read_alone() -> None:
+    """Of the other scenes' files none is, unless it is made from them."""
+    program = (
+        "import json, sys\n"
+        "from sandbox.session.session import Session\n"
+        "from scenes import registry\n"
+        "Session('single_grain', 'regular', 1)\n"
+        "print(json.dumps([name for name in registry.names() if f'scenes.{name}' in sys.modules]))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=REPOSITORY
+    )
+    assert json.loads(done.stdout) == ["single_grain"]
