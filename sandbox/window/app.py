@@ -324,6 +324,8 @@ class App:
             stage.renderer.resize(stage.screen.get_size())
         elif event.type == pygame.KEYDOWN and action_of(event) is Action.FULLSCREEN:
             self._act(Action.FULLSCREEN)  # wherever the keyboard is
+        elif event.type == pygame.KEYDOWN and action_of(event) is Action.BACK and self._waited_for:
+            self._act(Action.BACK)  # one waits for that, whatever has the keyboard
         elif (
             any(part.handle(event) for part in stage.parts_now())
             or self.pages.handle(event)
@@ -342,10 +344,20 @@ class App:
 
     def _typed_ahead(self, event: pygame.event.Event) -> bool:
         """What is written into a question before its scene is there to be seen is no key of the window's."""
-        stage, asking = self.stage, self.guide.asking
-        pages = stage.show_menu or stage.show_help or stage.show_explore
+        asking = self.guide.asking
         typing = event.type in (pygame.KEYDOWN, pygame.TEXTINPUT, pygame.TEXTEDITING)
-        return typing and asking.on and not pages and asking.handle(event)
+        return typing and asking.on and not self._page_is_open and asking.handle(event)
+
+    @property
+    def _waited_for(self) -> bool:
+        """Is something built that can be broken off, and is nothing over it?"""
+        building = (progress_of(seen) and not seen.ending for seen in self.stage.panes.snapshots)
+        return not self._page_is_open and any(building)
+
+    @property
+    def _page_is_open(self) -> bool:
+        stage = self.stage
+        return stage.show_menu or stage.show_help or stage.show_explore
 
     def _act(self, action: Action | None) -> None:
         if action is not None:

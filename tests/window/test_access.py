@@ -293,17 +293,19 @@ def test_readings_are_said_where_a_run_has_come_to_rest(desk: Desk) -> None:
     speech.begin()
 
     def at(increment: int, now: float) -> list[str]:
-        moved = replace(frame, increment=increment, curve_force=np.array([0.0, 0.25 * increment]))
+        note = f"height {increment} R"
+        curve = np.array([0.0, 0.25 * increment])
+        moved = replace(frame, increment=increment, curve_force=curve, notices=(note,))
         pane = moved, *desk.app.stage.picture.panes()[0][1:]
         speech.stage = SimpleNamespace(  # type: ignore[assignment]
             picture=SimpleNamespace(panes=lambda: [pane]), renderer=desk.app.stage.renderer
         )
         return list(speech._from_the_readings(now))
 
-    assert at(frame.increment, 100.0) == []  # what there was before anybody listened
     for step in range(1, 9):
         assert at(step, 100.0 + 0.1 * step) == []
-    (said,) = at(8, 103.0)
+    said, note = at(8, 103.0)
+    assert note == "height 8 R"
     assert "force on the intruder 2 k R" in said
     assert at(8, 104.0) == []
 
@@ -337,14 +339,14 @@ def test_a_sketch_is_told_while_it_is_drawn_and_compared_after(desk: Desk) -> No
         return [*speech._from_the_sketch(seconds), *speech._from_the_sketch(seconds + 10.0)]
 
     node = seen(desk).nodes[SKETCH]
-    assert words.SKETCH_NOTHING in node.text
-    assert app.stage.picture.panes()[0][0].curve_label in node.text
-    assert node.text in heard()
+    assert words.SKETCH_NOTHING in node.about
+    assert app.stage.picture.panes()[0][0].curve_label in node.about
+    assert any(one in node.about for one in heard())
     desk.key(pygame.K_SPACE, " ")
     for key in (*[pygame.K_RIGHT] * 8, *[pygame.K_UP] * 20):
         desk.key(key)
     desk.key(pygame.K_SPACE, " ")
-    drawn = seen(desk).nodes[SKETCH].text
+    drawn = seen(desk).nodes[SKETCH].about
     assert "17 points, from 0 at 0 to 2 at 7.5" in drawn
     assert words.SKETCH_PEN.format(along="7.5", up="2") in drawn
     said = heard(20.0)

@@ -374,15 +374,20 @@ class Compiling(FakeSession):
             self.refusal = str(error)
 
 
-def test_escape_during_a_change_says_when_it_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("focus", ["canvas/intruder", "grains/friction", "general/seed"])
+def test_escape_during_a_change_says_when_it_ends(
+    focus: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(desks, "FakeSession", Compiling)
     desk = Desk()
     desk.start()
     compiled = desk.session.block_change = threading.Event()
     desk.app.stage.send(Change("friction", 0.3))
     desk.until(lambda: desk.app.stage.panes.snapshot.phase == "building")
+    desk.app.stage.focus.go(focus, True)
     desk.key(pygame.K_ESCAPE)
     assert desk.page() == "run"
+    assert desk.app.stage.focus.name == focus  # another Escape leaves it
     said = progress_of(desk.app.stage.panes.snapshot)
     assert said == words.ENDING.format(text="Compiling")
     assert words.CANCELLED not in desk.app.stage.notices.said  # it is not yet

@@ -97,25 +97,26 @@ class Speech:
             yield words.title(snapshot.frame.scene, snapshot.frame.title)
 
     def _from_the_runs(self) -> Iterator[str]:
-        """Events, and what else stands under a canvas and did not before."""
+        """Events."""
         frames = frames_of(self.stage)
-        said = []
-        notes = set()
         for pane, (frame, name) in enumerate(zip(frames, names_of(frames), strict=True)):
             known = self._events.get(pane, len(frame.events))
             self._events[pane] = len(frame.events)
-            said += [f"{name}{words.say(event.text)}" for event in frame.events[known:]]
-            notes |= {f"{name}{words.say(notice)}" for notice in frame.notices}
-        before, self._notes = self._notes, frozenset(notes)
-        yield from said
-        yield from sorted(notes - before - {*said})
+            for event in frame.events[known:]:
+                yield f"{name}{words.say(event.text)}"
 
     def _from_the_readings(self, now: float) -> Iterator[str]:
-        """Force and way, once a run has come to rest: while it moves they would drown all else."""
+        """Force, way, and what stands under a canvas, once a run has come to rest: while it moves they would drown all else."""
         frames = frames_of(self.stage)
-        if self._run.settles(tuple((f.scene, f.packing, f.increment, f.busy) for f in frames), now):
-            for frame, name in zip(frames, names_of(frames), strict=True):
-                yield f"{name}{reading(self.stage, frame)}"
+        state = tuple((f.scene, f.packing, f.increment, f.busy, f.notices) for f in frames)
+        if not self._run.settles(state, now):
+            return
+        notes = []
+        for frame, name in zip(frames, names_of(frames), strict=True):
+            yield f"{name}{reading(self.stage, frame)}"
+            notes += [f"{name}{words.say(notice)}" for notice in frame.notices]
+        yield from (note for note in notes if note not in self._notes)
+        self._notes = frozenset(notes)
 
     def _from_the_sketch(self, now: float) -> Iterator[str]:
         """Where the pen has stopped, what has been drawn; and how far it lies from what was measured in the end."""

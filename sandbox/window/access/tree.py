@@ -195,8 +195,9 @@ class Tree:
             elif name in guide.titles:
                 nodes.append(button(name, guide.titles[name], press(name), does=does))
             else:
-                text = self._sketch(guide.asking)
-                nodes.append(Node(name, "CANVAS", page.ask, text, page.hint, does=does))
+                # Of such a thing no system tells the value.
+                about = f"{self._sketch(guide.asking)} {page.hint}".strip()
+                nodes.append(Node(name, "CANVAS", page.ask, about=about, does=does))
         self._group("tour", "GROUP", f"{page.title}, {step}", nodes, rect=edges(guide.rect))
 
     def _sketch(self, asking: Asking) -> str:

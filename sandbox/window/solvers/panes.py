@@ -362,7 +362,8 @@ class Panes:
         gone_back = self._gone_back
         if gone_back is not None and seen.serial > gone_back and seen.phase == "running":
             self._follow(seen.frame)
-        return self._logs.tell()
+        unseen = seen.phase == "building" and seen.frame is None  # what is said now nobody reads
+        return "" if unseen else self._logs.tell()
 
     @property
     def logs(self) -> list[Path]:
