@@ -46,6 +46,7 @@ class Asking(Silent):
         self.number = NumberField()
         self.sketch: Sketch | None = None
         self._refused = ""  # what was handed over and could not be read
+        self._fresh = False  # has no key been pressed since it was asked?
         self._last: tuple[float, float] | None = None  # of the stroke under way
         self._drawing = False
 
@@ -66,6 +67,7 @@ class Asking(Silent):
         self.number, self.sketch = question.number, question.sketch
         if self.sketch is not None:
             self.stage.renderer.plot_least = self.sketch.axes
+        self._fresh = True
         if self.predict is not None:
             # The ring says where the keyboard is: what is asked can be answered at once.
             self.stage.focus.go(self.stops()[self.chosen or 0], True)
@@ -169,9 +171,12 @@ class Asking(Silent):
         if self.predict is None:
             return False
         if event.type == pygame.KEYDOWN:
+            self._fresh = False
             return self._key(event)
         if event.type in (pygame.TEXTINPUT, pygame.TEXTEDITING) and self.stage.focus.name == FIELD:
-            if event.type == pygame.TEXTINPUT and not self.number.write(event.text):
+            # The letter of the key that has led here is nothing that was written.
+            written = event.type == pygame.TEXTINPUT and not self._fresh
+            if written and not self.number.write(event.text):
                 self.stage.toast(words.ASK_DIGITS)
             self.stage.redraw(True)
             return True

@@ -129,6 +129,8 @@ class Guide(Silent):
         self.asking.take_up(aside.question)
         if not self.asking.on:
             self._to_what_is_next()
+        page = self.page
+        self.stage.toast(words.TOUR_STEP.format(step=page.step + 1, steps=page.steps))
         self.stage.redraw(True)
 
     def next(self) -> None:

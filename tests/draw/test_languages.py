@@ -9,6 +9,7 @@ from dataclasses import replace
 import pygame
 import pytest
 
+from sandbox.draw.layout import PANEL
 from sandbox.draw.pages.help_page import draw_help
 from sandbox.draw.pages.tour_card import Field, TourPage, card_layout, draw_tour_card, fitting_type
 from sandbox.draw.painter import Painter
@@ -16,8 +17,9 @@ from sandbox.draw.render import Renderer
 from sandbox.draw.text import Type
 from sandbox.draw.theme import theme_named
 from sandbox.draw.views import VIEWS
-from sandbox.draw.widgets.controls import Slider, arranged
+from sandbox.draw.widgets.controls import Places, Slider, arranged
 from sandbox.draw.widgets.look import Attention, draw_control
+from sandbox.draw.widgets.panel_frame import foot_height, panel_picture
 from sandbox.lessons import classroom, tours
 from sandbox.lessons.lesson import Lesson
 from sandbox.window.card import MARGIN, WIDTH
@@ -88,6 +90,41 @@ def test_the_page_of_keys(
     for _, rows in words.help_groups():
         for key, meaning in rows:
             assert {key, meaning} <= {content for content, _ in texts}
+
+
+@pytest.mark.parametrize("scale", [0.875, 1.0, 1.25])
+def test_all_keys_are_on_one_page_in_a_usual_window(
+    texts: list[tuple[str, pygame.Rect]], scale: float
+) -> None:
+    renderer = Renderer(SIZES[0], scale)
+    places = draw_help(renderer.painter())
+    assert not places.most_scroll
+    nothing_cut(texts, SIZES[0])
+    assert all(places.card.contains(rect) for _, rect in texts)
+    assert words.HELP_MORE not in {content for content, _ in texts}
+
+
+def test_where_not_all_keys_are_on_the_page_it_says_that_there_are_more(
+    texts: list[tuple[str, pygame.Rect]],
+) -> None:
+    places = draw_help(Renderer(SIZES[0], 3.0).painter())
+    assert places.most_scroll
+    assert words.HELP_MORE in {content for content, _ in texts}
+
+
+@pytest.mark.parametrize("scale", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("height", [330, 520, 686])
+def test_the_foot_of_the_panel_is_never_empty(
+    texts: list[tuple[str, pygame.Rect]], height: int, scale: float
+) -> None:
+    """Nor cut: where the mouse is at no control it says what is to be found there."""
+    type_, size = Type(scale), (round(PANEL * scale), round(height * scale))
+    foot = foot_height(size[1], type_)
+    assert foot > 0
+    panel_picture(size, Places((), 0), 0, Attention(), theme_named("dark"), type_)
+    said = " ".join(content for content, _ in texts)
+    assert said == words.PANEL_FOOT
+    assert all(size[1] - foot <= rect.top and rect.bottom <= size[1] for _, rect in texts)
 
 
 def pages_of(lesson: Lesson) -> Iterator[tuple[str, TourPage, tuple[str, ...]]]:

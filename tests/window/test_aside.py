@@ -175,6 +175,7 @@ def test_y_brings_the_lesson_back_as_it_was(desk: Desk, come: Leave, leave: Leav
         assert guide.asking.sketch is not None
         assert str(guide.asking.sketch.up) == str(sketch)
     assert stage.panes.scene == guide.scene
+    assert words.ASK_DIGITS not in stage.notices.said  # the key that brought it back writes nothing
 
 
 def test_what_runs_goes_on_if_it_is_still_there(desk: Desk) -> None:
@@ -239,11 +240,12 @@ def test_the_panel_says_that_a_lesson_waits(desk: Desk) -> None:
         assert isinstance(place.control, Button)
         return place.control.title
 
-    assert title() == words.BUTTONS["tour"]
-    desk.key(pygame.K_ESCAPE)
-    assert title() == words.BUTTONS["lesson"]
-    desk.app.panel.use("general/tour", True, True)
-    assert desk.app.guide.on
+    for on in (True, False, True):
+        assert desk.app.guide.on is on
+        assert title() == words.BUTTONS["lesson"]
+        desk.app.panel.use("general/tour", True, True)
+    desk.app.guide.take_up(desk.app.guide.shelf.latest)  # type: ignore[arg-type]
+    desk.app.guide.close()
     assert title() == words.BUTTONS["tour"]
 
 

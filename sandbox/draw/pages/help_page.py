@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pygame
 
+from sandbox.draw.layout import SMALLEST
 from sandbox.draw.pages.cards import page_painter, veil
 from sandbox.draw.painter import Painter
 from sandbox.draw.text import BODY, HEADING, SMALL, Type
@@ -15,7 +16,13 @@ Group = tuple[str, list[tuple[str, str]]]
 
 DESIGNED = (560, 420)  # the smallest window [px] that the page fits at scale 1, scrolled
 MOST_COLUMNS = 3
-LARGER = (1.3, 1.15, 1.0)  # letters of the page over those of the window, where there is room
+LARGER = (
+    1.3,
+    1.15,
+    1.0,
+    0.9,
+    0.8,
+)  # letters of the page over those of the window, the first that fit
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,9 +100,10 @@ def draw_help(painter: Painter, scroll: int = 0) -> HelpLayout:
     """All keys on one page, scrolled down by so many pixels at most; returns where everything is."""
     size = painter.surface.get_size()
     groups = words.help_groups()
-    # Rather smaller letters than a scroll bar, but not below the window's own.
+    # Rather smaller letters than a scroll bar, but not so small that they are hard to read.
+    least = min(painter.scale, SMALLEST)
     for larger in LARGER:
-        own = page_painter(painter, DESIGNED, larger * painter.scale)
+        own = page_painter(painter, DESIGNED, max(larger * painter.scale, least))
         places = help_layout(size, own.type, groups)
         if not places.most_scroll:
             break
@@ -108,6 +116,11 @@ def draw_help(painter: Painter, scroll: int = 0) -> HelpLayout:
     )
     head = places.opening.top - round(5 * scale) - type_.height(HEADING, bold=True) // 2
     painter.text(words.HELP_TITLE, places.opening.left, head, size=HEADING, bold=True)
+    if places.most_scroll:
+        room = places.opening.width - 2 * type_.width(words.HELP_TITLE, HEADING, bold=True)
+        more = type_.shortened(words.HELP_MORE, SMALL, room)
+        at = places.opening.right, head
+        painter.text(more, *at, size=SMALL, colour=theme.soft_text, anchor="right")
     step = (places.opening.width - places.column) // max(places.columns - 1, 1)
     for (title, rows), (column, top) in zip(groups, places.places, strict=True):
         x = places.opening.left + column * step

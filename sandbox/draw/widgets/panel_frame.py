@@ -10,15 +10,17 @@ from sandbox.draw.text import SMALL, Type
 from sandbox.draw.theme import Theme, channels
 from sandbox.draw.widgets.controls import PAD, Place, Places
 from sandbox.draw.widgets.look import Attention, draw_control
+from sandbox.words import words
 
 FOOT_LINES = 4  # of help, at most
+SHARE = 6  # a panel is at least so many times as high as its foot
 
 
 def foot_height(height: int, type_: Type) -> int:
     """What the help at the foot takes of a panel's height [px]: nothing of a low one."""
     for lines in range(FOOT_LINES, 1, -1):
         foot = lines * type_.height(SMALL) + round(16 * type_.scale)
-        if height > 5 * foot:
+        if height > SHARE * foot:
             return foot
     return 0
 
@@ -51,9 +53,8 @@ def panel_picture(
     painter.fill(pygame.Rect(0, 0, max(round(type_.scale), 1), height), theme.hairline)
     if foot:
         about = places.named(attention.hover) or places.named(attention.focus)
-        _draw_foot(
-            painter, pygame.Rect(0, seen, width, foot), "" if about is None else about.control.help
-        )
+        said = "" if about is None else about.control.help
+        _draw_foot(painter, pygame.Rect(0, seen, width, foot), said or words.PANEL_FOOT)
     painter.flush()
     return whole
 
@@ -94,6 +95,6 @@ def _draw_foot(painter: Painter, rect: pygame.Rect, text: str) -> None:
     lines = type_.wrapped(text, SMALL, room)
     if len(lines) > most:
         lines = [*lines[: most - 1], type_.shortened(lines[most - 1] + " …", SMALL, room)]
-    for index, words in enumerate(lines):
+    for index, each in enumerate(lines):
         y = rect.top + pad // 2 + round((index + 0.5) * line)
-        painter.text(words, rect.left + pad, y, size=SMALL)
+        painter.text(each, rect.left + pad, y, size=SMALL)

@@ -8,6 +8,7 @@ from core.errors import InputError
 from sandbox.draw.theme import packing_colour
 from sandbox.draw.views import VIEWS
 from sandbox.draw.widgets.controls import Button, Choice, Control, Option, Row, Stepper
+from sandbox.lessons import tours
 from sandbox.window.actions import Actions
 from sandbox.window.canvas.brush import Brush
 from sandbox.window.guide import Guide
@@ -119,12 +120,13 @@ class GeneralSection:
         return controls
 
     def _tour(self) -> Button:
-        """Begins one, or goes on with what was put aside."""
-        aside = None if self.guide.on else self.guide.shelf.latest
-        if aside is None or aside.tour:
-            return self._button("tour", on=self.guide.on)
-        about = words.BUTTONS_HELP["lesson"]
-        return Button("general/tour", words.BUTTONS["lesson"], False, help=about)
+        """Begins one, puts it aside and goes on with it, as with a lesson."""
+        lesson = self.guide.lesson
+        if lesson is None and (aside := self.guide.shelf.latest) is not None:
+            lesson = aside.lesson
+        name = "tour" if lesson is None or tours.is_tour(lesson) else "lesson"
+        title, about = words.BUTTONS[name], words.BUTTONS_HELP[name]
+        return Button("general/tour", title, self.guide.on, help=about)
 
     def _button(
         self, name: str, *, on: bool | None = None, enabled: bool = True, sign: str = ""
