@@ -41,6 +41,7 @@ class Guide(Silent):
         self.card = Card(stage)
         self.shelf = Shelf(stage)
         self._hover = ""
+        self._guessed = False  # by the mouse, which has not moved since
 
     @property
     def on(self) -> bool:
@@ -289,9 +290,21 @@ class Guide(Silent):
         self._hover = self.card.button_at(self.page, event.pos)
         inside = self.rect.collidepoint(event.pos)
         if event.type == pygame.MOUSEBUTTONDOWN and event.button == 1 and self._hover:
-            self.press(self._hover)
+            self._click(self._hover)
+        elif event.type == pygame.MOUSEMOTION:
+            self._guessed = False
         pressed = event.type == pygame.MOUSEBUTTONDOWN and event.button == 1
         return inside or (pressed and self.asking.refuse(event.pos))
+
+    def _click(self, name: str) -> None:
+        """A button by mouse. What tells the answer may have come under a pointer that has just handed over a guess."""
+        if name == NEXT and self._guessed and self._gives_away:
+            self.stage.toast(words.ASK_TRY.format(why=words.TOUR_WHY))
+            self._guessed = False
+            return
+        asked = self.asking.on
+        self.press(name)
+        self._guessed = asked and not self.asking.on
 
     def _key(self, key: int) -> bool:
         focus = self.stage.focus

@@ -21,11 +21,14 @@ from sandbox.lessons.reading import parse_lesson
 from sandbox.session.commands import Change, Grab, Move, Protocol
 from sandbox.session.history import Event
 from sandbox.window.access import reader as reader_module
+from sandbox.window.access.handles import hand_keys
 from sandbox.window.access.node import ROOT, Node
 from sandbox.window.access.reader import SAFE, Reader
 from sandbox.window.access.speech import Speech
 from sandbox.window.access.tree import Tree
 from sandbox.window.asking import SKETCH
+from sandbox.window.canvas.arrows import FINE_STEP, STEP
+from sandbox.window.focus import CANVAS
 from sandbox.words import language, words
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
@@ -160,6 +163,10 @@ def test_a_handle_is_led_and_goes_where_it_is_told(desk: Desk) -> None:
     x = "canvas/intruder/x"
     before = seen(desk).nodes[x].number
     assert before is not None
+    for name in (x, CANVAS):  # and it says how far keys lead it, with Shift too
+        assert hand_keys() in seen(desk).nodes[name].about
+        assert f"{STEP:g} R" in hand_keys()
+        assert f"Shift by {FINE_STEP:g} R" in hand_keys()
     do(desk, x, "INCREMENT")
     moved = [done for done in desk.session.commands if isinstance(done, Move)]
     desk.until(lambda: any(isinstance(done, Move) for done in desk.session.commands))

@@ -149,6 +149,22 @@ def test_one_enter_too_many_gives_nothing_away(desk: Desk) -> None:
     assert guide.page.why == "The answer: “that”. That, as everybody knows."
 
 
+def test_one_click_too_many_gives_nothing_away(desk: Desk) -> None:
+    """The button that tells may come to stand where that of the guess was."""
+    guide = desk.app.guide
+    guide.asking.choose(0)
+    place = button(desk, NEXT)
+    desk.click(place)
+    assert not guide.asking.on
+    again = button(desk, NEXT)  # as if it were there
+    for pressed in (desk.press, desk.release):
+        pressed(again)
+    assert not guide.told
+    assert desk.app.stage.notices.latest == words.ASK_TRY.format(why=words.TOUR_WHY)
+    desk.click(again)
+    assert guide.told
+
+
 def test_every_answer_leaves_a_row_and_says_whether_it_had_been_shown(
     desk: Desk, tmp_path: Path
 ) -> None:
