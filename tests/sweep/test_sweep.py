@@ -297,6 +297,22 @@ def test_parquet_has_the_types_of_its_columns(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("in_threads")
+def test_a_text_that_begins_as_a_formula_is_text_in_both_tables(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+
+    def fails(job: Job) -> Found:
+        raise InputError(f"={job.row}+1")
+
+    monkeypatch.setattr(sweep, "carry_out", fails)
+    assert cli.main(["sweep", *WORDS, "--parquet", "--out", str(tmp_path)]) == 1
+    assert "'=1+1" in (tmp_path / RUNS).read_text()
+    found = parquet.read_table(tmp_path / "runs.parquet").column("why").to_pylist()
+    assert found == [f"={row}+1" for row in range(1, 7)]
+
+
+@pytest.mark.usefixtures("in_threads")
 def test_what_fails_is_a_row_that_is_tried_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
