@@ -108,7 +108,7 @@ class State:
                 hand_force=last.hand_force,
                 report=last.report,
                 course=kept.course,
-                history=kept.history.upto(kept.length),
+                history=kept.history.first(kept.length),
                 events=tuple(e for e in kept.history.events if e.increment < kept.length),
             ),
         )

@@ -70,6 +70,13 @@ class Checkpoints:
     def __len__(self) -> int:
         return len(self._kept)
 
+    def copy(self) -> Checkpoints:
+        """The same checkpoints in a list of its own."""
+        twin = Checkpoints(self._dense, self._most_bytes)
+        twin._kept, twin._increments = self._kept.copy(), self._increments.copy()
+        twin.size = self.size
+        return twin
+
     @property
     def first(self) -> int:
         """The earliest increment that can be recalled."""

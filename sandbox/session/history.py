@@ -96,13 +96,20 @@ class History:
 
     def upto(self, length: int) -> History:
         """The history as it was with so many rows, to go on from there; itself if there are no more."""
-        if length == len(self._rows):
-            return self
+        return self if length == len(self._rows) else self.first(length)
+
+    def first(self, length: int) -> History:
+        """So many rows, which stay as they are whatever becomes of the run: another thread may read them."""
         early = History()
         early._rows = self._rows[:length]
         early._curve = self._curve[:, : max(length, 256)].copy()
         early.events = tuple(event for event in self.events if event.increment < length)
         return early
+
+    def cut(self, length: int, events: tuple[Event, ...]) -> None:
+        """Be as it was with so many rows and these events. Nobody may have looked at later rows, as others take their place."""
+        del self._rows[length:]
+        self.events = events
 
     @property
     def curve(self) -> np.ndarray:

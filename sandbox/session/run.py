@@ -19,6 +19,7 @@ from sandbox.session.editing import edited
 from sandbox.session.forces import without
 from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
+from sandbox.session.mark import RunMark
 from scenes.accuracy import UNKNOWN
 from scenes.scene import Check, Earlier, Holding, Latest, Remarks, Scene, Setup, Track, Values
 from scenes.text import Text, message
@@ -322,6 +323,29 @@ class Run:
     def recall(self, increment: int) -> None:
         """Go to the state after that increment, or the nearest kept before it."""
         self.restore(self.checkpoints.at(increment))
+
+    def mark(self) -> RunMark:
+        """A place to come back to, between two increments."""
+        return RunMark(
+            state=self.settled,
+            kept=self._kept,
+            last=self.last,
+            before_edit=self._before_edit,
+            history=self.history,
+            events=self.history.events,
+            checkpoints=self.checkpoints.copy(),
+            straight=self.setup.reach is None,
+        )
+
+    def go_back(self, mark: RunMark) -> None:
+        """Be as at that mark of this run: what came since has never been."""
+        self.engine.restore(mark.state.engine)
+        self.course, self.settings = mark.state.course.copy(), mark.state.settings
+        self.history = mark.history
+        self.history.cut(mark.state.length, mark.events)
+        self.last = mark.last
+        self.checkpoints = mark.checkpoints.copy()
+        self._kept, self._before_edit = mark.kept, mark.before_edit
 
     # What can be seen.
 

@@ -44,6 +44,7 @@ from sandbox.session.forces import ContactForces, contact_forces
 from sandbox.session.frame import Frame
 from sandbox.session.history import History, Row
 from sandbox.session.log import Log
+from sandbox.session.mark import Mark
 from sandbox.session.run import Run
 from sandbox.session.table import RunTable
 from sandbox.session.take_frame import take
@@ -319,6 +320,16 @@ class Session:
         for finished in self.slices(iterations, check):
             if finished:
                 yield self.history[-1]
+
+    def mark(self) -> Mark:
+        """A place to come back to, between two increments and with no command waiting."""
+        return Mark(self.run.mark(), len(self._commands), self._finished, self._refusals)
+
+    def go_back(self, mark: Mark) -> None:
+        """Be as at that mark; since then only increments were made, even the one under way, and bodies were asked to move."""
+        self.run.go_back(mark.run)
+        del self._commands[mark.commands :]
+        self._finished, self._refusals = mark.finished, mark.refusals
 
     # What can be seen.
 

@@ -45,7 +45,7 @@ from sandbox.window.picture import progress_of
 from sandbox.window.question import ExportQuestion
 from sandbox.window.reel import Reel
 from sandbox.window.solvers.panes import Panes
-from sandbox.window.solvers.solver_thread import Snapshot
+from sandbox.window.solvers.snapshot import Snapshot
 from sandbox.window.stage import Stage
 from sandbox.window.timeline import Timeline
 from sandbox.words import words
@@ -204,21 +204,26 @@ class App:
             self.farewell = "\n".join(filter(None, said))
         return warm and ended
 
+    @property
+    def shows_splash(self) -> bool:
+        """Is there nothing to be seen of a run yet?"""
+        return self._splash
+
     # -- one picture --
 
     def tick(self) -> None:
         """Handle what has happened, draw if there is something new, wait for the next picture."""
+        stage = self.stage
+        if said := stage.panes.tick():  # before a hand that turns drops what is ready
+            stage.toast(said)
         for event in pygame.event.get():
             self.handle(event)
         self.reader.tick(time.perf_counter())
-        stage = self.stage
         if not stage.running:
             return
         stage.mouse.send_move(stage.send)
         now = time.perf_counter()
         self.pages.explore.tick()
-        if said := stage.panes.tick():
-            stage.toast(said)
         snapshot = stage.panes.snapshot
         serials = stage.picture.serials
         if serials != self._serials:

@@ -16,7 +16,7 @@ from sandbox.draw.theme import packing_colour, packing_dash
 from sandbox.session.frame import Frame
 from sandbox.window.solvers.kept_curves import Kept
 from sandbox.window.solvers.panes import Panes
-from sandbox.window.solvers.solver_thread import Snapshot
+from sandbox.window.solvers.snapshot import Snapshot
 from sandbox.words import words
 
 Drawn = tuple[Frame, Camera, pygame.Rect]
@@ -31,6 +31,7 @@ class Picture:
         self._lit = False
         self.still = False  # no flashes
         self.events: tuple[str, ...] = ()  # kinds of those that were new in the latest picture
+        self.drawn: tuple[Frame | None, ...] = ()  # in it
 
     @property
     def moving(self) -> bool:
@@ -67,6 +68,7 @@ class Picture:
         """All panes; at least one of them must have a frame."""
         snapshots = self._panes.snapshots
         frames = [seen.frame for seen in snapshots]
+        self.drawn = tuple(frames)
         lit = self._lights(frames, now)
         first = next(frame for frame in frames if frame is not None)
         several = len(snapshots) > 1

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
+from typing import Any
 
 from core.errors import InputError
 from sandbox.session.commands import (
@@ -27,6 +30,21 @@ from tests.draw.frames import intruder_frame
 
 SLICES = 3  # to an increment
 STEP = 0.5  # of the handle in an increment [R]
+
+
+_REMEMBERED = {
+    *("increments", "last_kept", "commands", "_waiting", "_slice", "_script", "_place", "_target")
+}
+
+
+class FakeMark:
+    """Where such a session stands; every other target is a turn."""
+
+    def __init__(self, state: Mapping[str, Any]) -> None:
+        self.state = state
+
+    def detour(self, move: Move, ready: Sequence[Any]) -> float:
+        return math.inf
 
 
 class FakeSession:
@@ -164,6 +182,12 @@ class FakeSession:
 
     def made(self) -> None:
         """Nothing to be kept in a file."""
+
+    def mark(self) -> Any:
+        return FakeMark({k: copy(v) for k, v in vars(self).items() if k in _REMEMBERED})
+
+    def go_back(self, mark: Any) -> None:
+        vars(self).update({k: copy(v) for k, v in mark.state.items()})
 
     def log(self) -> Log:
         assert not self.busy, "a log ends between increments"

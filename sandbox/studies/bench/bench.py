@@ -14,6 +14,7 @@ from sandbox.studies.bench import frames as bench_frames
 from sandbox.studies.bench import kernels as bench_kernels
 from sandbox.studies.bench import peers as bench_peers
 from sandbox.studies.bench import scaling as bench_scaling
+from sandbox.studies.bench import smoothness as bench_smoothness
 from sandbox.studies.bench import startup as bench_startup
 from sandbox.studies.bench import terms as bench_terms
 from sandbox.studies.bench import threads as bench_threads
@@ -32,10 +33,11 @@ class Plan:
     starts: int
     cold: bool
     threads_seconds: float  # 0: not looked at, since its kernels are compiled for nobody else
+    drag_seconds: float  # 0: no window is opened
 
 
-FULL = Plan(12.0, 30.0, 150, 3.0, 3, 10, cold=True, threads_seconds=18.0)
-QUICK = Plan(2.0, 3.0, 15, 1.0, 1, 1, cold=False, threads_seconds=0.0)
+FULL = Plan(12.0, 30.0, 150, 3.0, 3, 10, cold=True, threads_seconds=18.0, drag_seconds=3.0)
+QUICK = Plan(2.0, 3.0, 15, 1.0, 1, 1, cold=False, threads_seconds=0.0, drag_seconds=0.0)
 
 
 def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
@@ -51,6 +53,8 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     yield lambda: bench_frames.section(frames=plan.frames)
     yield lambda: bench_drains.section(quick=quick)
     yield lambda: bench_drawing.section(seconds=plan.drawing_seconds)
+    if plan.drag_seconds > 0.0:
+        yield lambda: bench_smoothness.section(seconds=plan.drag_seconds, rounds=2)
 
 
 def run(*, quick: bool, peers: bool, show: Callable[[Section], None]) -> Report:

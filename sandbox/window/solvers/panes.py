@@ -17,11 +17,13 @@ from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Change, Command, Recall, Redo, Reset, Undo
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
+from sandbox.window.solvers.ahead import DEPTH
 from sandbox.window.solvers.conductor import Conductor
 from sandbox.window.solvers.in_step import begins_anew, comparable, way_back
 from sandbox.window.solvers.kept_curves import Curves
 from sandbox.window.solvers.run_logs import RunLogs
-from sandbox.window.solvers.solver_thread import Snapshot, SolverThread
+from sandbox.window.solvers.snapshot import Snapshot
+from sandbox.window.solvers.solver_thread import SolverThread
 from sandbox.words import words
 from scenes import registry
 from scenes.text import message
@@ -60,8 +62,12 @@ class Panes:
         make: Callable[..., Session] = Session,
         autosave: Autosave | None = None,
         log: str | os.PathLike[str] | None = None,
+        depth: int = DEPTH,
     ) -> None:
-        """``log``: where the first run is logged, further ones beside it; side by side that of the first packing."""
+        """``log``: where the first run is logged, further ones beside it; side by side that of the first packing.
+
+        ``depth``: so many increments are made ahead of what is seen; ``tick`` is called once a picture.
+        """
         self.autosave = autosave
         self._logs = RunLogs(log)
         self.packing = packing  # chosen in the menu, for the next scene
@@ -73,6 +79,7 @@ class Panes:
         self._gone_back: int | None = None
         self._panes: list[Pane] = []
         self._runs: tuple[Wanted, ...] = ()  # that were begun side by side
+        self.depth = depth  # of the next scene that is started
         self._conductor = Conductor()
         self._speed = math.inf
         self._leaving: list[SolverThread] = []
@@ -196,7 +203,7 @@ class Panes:
         self._wanted = self._start = wanted
         self._gone_back = None
         self._paused_by_menu = False
-        self._conductor = Conductor(begins_anew=self._begins_anew)
+        self._conductor = Conductor(begins_anew=self._begins_anew, depth=self.depth)
         self._conductor.set_speed(self._speed)
         log = self._logs.begin()
         self._runs = ()
@@ -355,7 +362,11 @@ class Panes:
         self._paused_by_menu = False
 
     def tick(self) -> str:
-        """Once a picture: what was undone may be a packing, a seed or a setting. Returns what to say, if anything."""
+        """Once a picture, at its beginning: the next of what the solvers have ready is seen from now on.
+
+        What was undone may be a packing, a seed or a setting. Returns what to say, if anything.
+        """
+        self._conductor.show()
         seen = self.snapshot
         if self.autosave is not None:
             self.autosave.keep(seen.made)

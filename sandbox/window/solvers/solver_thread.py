@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import contextlib
 import logging
-import math
 import threading
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Literal, Protocol
 
 from core.errors import InputError
@@ -21,8 +20,11 @@ from sandbox.session.beginning import Made
 from sandbox.session.commands import Command
 from sandbox.session.frame import Frame
 from sandbox.session.log import Log
+from sandbox.session.mark import Mark
 from sandbox.session.session import Tell
-from sandbox.window.solvers.conductor import Conductor, Turn
+from sandbox.window.solvers.ahead import Ready
+from sandbox.window.solvers.conductor import Conductor, Turn, Word
+from sandbox.window.solvers.snapshot import Phase, Snapshot
 from scenes.text import message
 
 log = logging.getLogger(__name__)
@@ -30,8 +32,6 @@ log = logging.getLogger(__name__)
 SLICE = 200  # iterations of the minimiser between two looks at whether to end
 CANCELLED = "cancelled: everything is as it was before"
 PICTURE = 1.0 / 90.0  # pictures of an unfinished increment are taken no more often than this [s]
-
-Phase = Literal["building", "catching up", "running", "failed", "stopped"]
 
 
 class SessionLike(Protocol):
@@ -63,19 +63,11 @@ class SessionLike(Protocol):
     def log(self) -> Log:
         """What was done so far, between two increments."""
 
+    def mark(self) -> Mark:
+        """A place to come back to, between two increments."""
 
-@dataclass(frozen=True, slots=True)
-class Snapshot:
-    """What the window may know of the solver at one moment."""
-
-    phase: Phase
-    text: str = ""  # what is being built
-    fraction: float = math.nan  # how much of that is done, or caught up, 0 to 1; nan: nobody knows
-    frame: Frame | None = None  # the latest picture; kept through a rebuild and a failure
-    error: str = ""  # plain words, when failed
-    serial: int = 0  # counts publications
-    made: Made | None = None  # what there is to be kept in a file
-    ending: bool = False  # the build is broken off as soon as what is being compiled is compiled
+    def go_back(self, mark: Mark) -> None:
+        """Be as at that mark, even from within an increment."""
 
 
 class _Stopped(Exception):
@@ -91,15 +83,16 @@ class SolverThread:
         conductor: Conductor,
         keep_log: Callable[[Log], None] | None = None,
     ) -> None:
-        """``keep_log`` is handed what was done after each turn."""
+        """``keep_log`` is handed what was done, up to what is seen."""
         self._session = session
         self._keep_log = keep_log
         self.conductor = conductor
-        self._member = self.conductor.join()
+        self._member = self.conductor.join(self._see)
         self._built = False
         self._cancel = False
         self._snapshot = Snapshot("building")
         self._pictured = 0.0
+        self._advanced = False  # has the latest turn finished an increment?
         self._patience = 0.0  # with the increment at work when it is time to end [s]
         # A daemon, because a compilation cannot be broken off: the process may end without it.
         self._thread = threading.Thread(target=self._run, name="solver", daemon=True)
@@ -135,11 +128,9 @@ class SolverThread:
     def _run(self) -> None:
         try:
             self._build()
-            advanced = False
-            self._tell_log()
-            while (turn := self._next_turn(advanced)) is not None:
-                advanced = self._work(turn)
-                self._tell_log()
+            while (turn := self._next_turn()) is not None:
+                for _ in self._work(turn):
+                    pass
             self._finish()
         except _Stopped:
             now = self._snapshot
@@ -157,7 +148,7 @@ class SolverThread:
     def _build(self) -> None:
         self._session.build(self._report)
         self._built = True
-        self._publish()
+        self._deliver()
 
     def _report(self, text: str, fraction: float) -> None:
         """Progress of a build; also the place where a build can be broken off."""
@@ -172,51 +163,82 @@ class SolverThread:
         )
 
     def _fail(self, message: str) -> None:
+        self.conductor.leave(self._member)  # nothing that is ready is shown over it
         with contextlib.suppress(Exception):  # the last state helps to understand, if there is one
             self._publish("failed")
         now = self._snapshot
         self._snapshot = replace(now, phase="failed", error=message, serial=now.serial + 1)
 
     def _publish(self, phase: Phase | None = None) -> None:
+        """A picture of the state is seen from now on."""
+        seen = self._picture(phase)
+        self._snapshot = replace(seen, serial=self._snapshot.serial + 1)
+
+    def _picture(self, phase: Phase | None = None) -> Snapshot:
         """A picture of the state; without a phase: running, or catching up with the others."""
         share = self._member.caught_up
         if phase is None:
             phase = "running" if share == 1.0 else "catching up"
-        frame, made = self._session.frame(), self._session.made()
-        serial = self._snapshot.serial + 1
-        self._snapshot = Snapshot(phase, "", share, frame, serial=serial, made=made)
         self._pictured = time.perf_counter()
+        return Snapshot(phase, "", share, self._session.frame(), made=self._session.made())
 
-    def _next_turn(self, advanced: bool) -> Turn | None:
+    def _see(self, ready: Ready) -> None:
+        """What was ready is seen from now on: the conductor says when, in whatever thread."""
+        self._snapshot = replace(ready.snapshot, serial=self._snapshot.serial + 1)
+        if self._keep_log is not None and ready.log is not None:
+            self._keep_log(ready.log)
+
+    def _deliver(self) -> None:
+        """What the turn has come to."""
+        session = self._session
+        picture = self._picture()
+        log = None if self._keep_log is None else session.log()
+        mark = session.mark() if self.conductor.works_ahead else None
+        self.conductor.deliver(self._member, Ready(self._member.turn, picture, log, mark))
+
+    def _next_turn(self) -> Turn | Literal[Word.BACK] | None:
         """Sleep until there is something to do; None when it is time to end."""
+        advanced, self._advanced = self._advanced, False
         wants = not self._session.idle
         return self.conductor.next_turn(self._member, wants=wants, advanced=advanced)
 
-    def _work(self, turn: Turn) -> bool:
-        """Deliver the commands and relax one increment, if there is one; True if it was finished."""
+    def _work(self, turn: Turn | Literal[Word.BACK]) -> Iterator[None]:
+        """Deliver the commands and relax one increment, if there is one, slice by slice; or go back to what is seen."""
+        if turn is Word.BACK:
+            self._go_back()
+            return
         self._cancel = False
         for command in turn:
             self._session.submit(command)
         finished = self._advance()
-        while self._session.busy and not self._member.stopping:
-            if time.perf_counter() - self._pictured >= PICTURE:
+        while self._session.busy and not self._member.stopping and not self._member.back:
+            yield
+            if time.perf_counter() - self._pictured >= PICTURE and self._may_be_seen():
                 self._publish()
             finished = self._advance()
-        if not self._member.missed or time.perf_counter() - self._pictured >= PICTURE:
-            self._publish()
-        return finished
+        due = not self._member.missed or time.perf_counter() - self._pictured >= PICTURE
+        if due and not self._session.busy:
+            self._deliver()
+        self._advanced = finished
+
+    def _may_be_seen(self) -> bool:
+        return self.conductor.may_be_seen(self._member)
+
+    def _go_back(self) -> None:
+        """To what is seen: what was made ahead of it has never been."""
+        mark = self._member.way_back
+        if mark is not None:
+            self._session.go_back(mark)
+        self.conductor.gone_back(self._member)
 
     def _advance(self) -> bool:
         """A slice of work, when a core is free for it."""
         with self.conductor.core:
             return self._session.advance(SLICE)
 
-    def _tell_log(self) -> None:
-        if self._keep_log is not None and not self._session.busy:
-            self._keep_log(self._session.log())
-
     def _finish(self) -> None:
-        """Bring the increment at work to its end: a log ends between increments."""
+        """To what is seen, or bring the increment at work to its end: a log ends between increments."""
+        self._go_back()
         end = time.perf_counter() + self._patience
         while self._session.busy and time.perf_counter() < end:
             self._session.advance(SLICE)
