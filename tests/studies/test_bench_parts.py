@@ -18,6 +18,7 @@ from sandbox.studies.bench import frames as bench_frames
 from sandbox.studies.bench import peers as bench_peers
 from sandbox.studies.bench import report as bench_report
 from sandbox.studies.bench import scaling as bench_scaling
+from sandbox.studies.bench import smoothness as bench_smoothness
 from sandbox.studies.bench import soft_discs
 from sandbox.studies.bench import startup as bench_startup
 from sandbox.studies.bench import threads as bench_threads
@@ -319,3 +320,36 @@ def test_first_frame_tells_its_milestones_in_order() -> None:
     ]
     assert marks == sorted(marks)
     assert marks[-1] <= run["seconds"]
+
+
+def seen_at(speed: float, moved: int, turn: float | None = 0.03) -> bench_smoothness.Seen:
+    drags = [
+        {"depth": 0, "due": 100, "moved": 50, "rate": 60.0, "turn": None},
+        {"depth": 6, "due": 100, "moved": moved, "rate": 58.0, "turn": turn},
+    ]
+    return bench_smoothness.Seen(speed, (*drags, *drags))
+
+
+def test_slower_hands_are_tried_where_nothing_is_aimed_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    shares = dict(zip(bench_smoothness.SPEEDS, (80, 96, 99), strict=True))
+
+    def watch(_: object, speed: float, **__: float) -> bench_smoothness.Seen:
+        return seen_at(speed, shares[speed])
+
+    monkeypatch.setattr(bench_smoothness, "watch", watch)
+    free = bench_smoothness.Case("hopper", "mixed", 300, aimed=False)
+    aimed = bench_smoothness.Case("intruder", "regular", 300)
+    assert [s.speed for s in bench_smoothness.measure(free, seconds=1.0, rounds=2)] == [3.0, 2.0]
+    assert [s.speed for s in bench_smoothness.measure(aimed, seconds=1.0, rounds=2)] == [3.0]
+    section = bench_smoothness.section(seconds=1.0, rounds=2, selected=[aimed, free])
+    assert [row.met for row in section.rows] == [False, None, None]
+    assert section.rows[0].target == "≥ 95%, 15.0 points short"
+    assert section.rows[0].measured == (
+        "80% (50% without working ahead), 58 to 60 pictures/s, a turn seen within 30 ms"
+    )
+    json.dumps(section.data, allow_nan=False)
+
+
+def test_a_turn_that_was_not_seen_is_no_good_one() -> None:
+    assert seen_at(3.0, 99).turn == pytest.approx(30.0)
+    assert seen_at(3.0, 99, None).turn == math.inf

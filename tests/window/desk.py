@@ -33,6 +33,12 @@ class Desk:
     def session(self) -> FakeSession:
         return self.sessions[-1]
 
+    @property
+    def seen(self) -> int:
+        """Increments that the window has shown; a session may be ahead of that."""
+        frame = self.app.stage.panes.snapshot.frame
+        return 0 if frame is None else frame.increment
+
     def page(self) -> str:
         if not self.app.stage.running:
             return "closed"

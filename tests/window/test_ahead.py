@@ -40,6 +40,7 @@ BOUNDED = settings(
 def no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small slices, and no pictures of increments under way."""
     monkeypatch.setattr(solver_thread, "SLICE", SLICE)
+    monkeypatch.setattr(solver_thread, "LONGEST_SLICE", SLICE)
     monkeypatch.setattr(solver_thread, "PICTURE", math.inf)
 
 

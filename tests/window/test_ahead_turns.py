@@ -1,4 +1,4 @@
-"""What becomes of increments that are ready and unseen: shown one a picture, dropped where the hand turns, left behind by none."""
+"""What becomes of increments that are ready and unseen: shown one a picture, dropped where the hand turns, and gone then."""
 
 from __future__ import annotations
 
@@ -38,6 +38,7 @@ SLICE = 60  # iterations: most increments take several slices here
 def no_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     """Small slices, and no pictures of increments under way."""
     monkeypatch.setattr(solver_thread, "SLICE", SLICE)
+    monkeypatch.setattr(solver_thread, "LONGEST_SLICE", SLICE)
     monkeypatch.setattr(solver_thread, "PICTURE", math.inf)
 
 

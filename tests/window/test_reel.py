@@ -77,7 +77,7 @@ def test_e_writes_the_run_so_far(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     desk = Desk()
     desk.start()
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.session.increments > 3)
+    desk.until(lambda: desk.seen > 3)
     desk.key(pygame.K_SPACE)
     desk.until(lambda: not desk.session.busy)
     desk.app.tick()

@@ -97,7 +97,7 @@ def test_a_press_in_any_canvas_moves_all(desk: Desk, side: int) -> None:
 
 def test_who_comes_late_is_brought_to_where_the_first_is(desk: Desk) -> None:
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.session.increments >= 8)
+    desk.until(lambda: desk.seen >= 8)
     compare(desk)
     assert said(desk) == words.COMPARE_ON
     desk.key(pygame.K_SPACE)
@@ -109,7 +109,7 @@ def test_who_comes_late_is_brought_to_where_the_first_is(desk: Desk) -> None:
 
 def test_after_going_back_all_begin_anew(desk: Desk) -> None:
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.session.increments >= 3)
+    desk.until(lambda: desk.seen >= 3)
     desk.key(pygame.K_z)
     compare(desk)
     assert said(desk) == words.COMPARE_ANEW
@@ -148,7 +148,7 @@ def test_one_that_fails_says_so_and_reset_builds_all_anew(desk: Desk) -> None:
     desk.sessions[2].fail = RuntimeError("a grain got lost")
     desk.key(pygame.K_a)
     desk.until(lambda: desk.app.stage.panes.snapshots[2].phase == "failed")
-    desk.until(lambda: desk.sessions[0].increments > 3)
+    desk.until(lambda: desk.seen > 3)
     desk.key(pygame.K_r)
     desk.until(lambda: [seen.phase for seen in desk.app.stage.panes.snapshots] == ["running"] * 3)
     assert len(desk.sessions) == 6

@@ -469,7 +469,7 @@ def test_close_writes_the_log_between_increments(tmp_path: Path) -> None:
     desk = Desk(log=tmp_path / "run.jsonl")
     desk.start()
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.session.increments > 1)
+    desk.until(lambda: desk.seen > 1)
     desk.app.close()
     assert read_log(tmp_path / "run.jsonl").end == desk.session.increments
     assert not desk.session.busy
@@ -479,7 +479,7 @@ def test_closing_does_not_wait_for_a_change_that_compiles(tmp_path: Path) -> Non
     desk = Desk(log=tmp_path / "run.jsonl")
     desk.start()
     desk.key(pygame.K_a)
-    desk.until(lambda: desk.session.increments > 1)
+    desk.until(lambda: desk.seen > 1)
     compiled = desk.session.block_change = threading.Event()
     desk.app.stage.send(Change("packing", "auxetic"))
     desk.until(lambda: desk.session.waits)

@@ -29,7 +29,9 @@ from scenes.text import message
 
 log = logging.getLogger(__name__)
 
-SLICE = 200  # iterations of the minimiser between two looks at whether to end
+SLICE = 200  # iterations of the minimiser between two looks at the world, at least
+LONGEST_SLICE = 4000
+LOOK = 8e-3  # [s] more of them where they take less: to take the interpreter's lock again may mean to wait for the window
 CANCELLED = "cancelled: everything is as it was before"
 PICTURE = 1.0 / 90.0  # pictures of an unfinished increment are taken no more often than this [s]
 
@@ -93,6 +95,7 @@ class SolverThread:
         self._snapshot = Snapshot("building")
         self._pictured = 0.0
         self._advanced = False  # has the latest turn finished an increment?
+        self._slice = SLICE
         self._patience = 0.0  # with the increment at work when it is time to end [s]
         # A daemon, because a compilation cannot be broken off: the process may end without it.
         self._thread = threading.Thread(target=self._run, name="solver", daemon=True)
@@ -234,7 +237,12 @@ class SolverThread:
     def _advance(self) -> bool:
         """A slice of work, when a core is free for it."""
         with self.conductor.core:
-            return self._session.advance(SLICE)
+            begun = time.perf_counter()
+            finished = self._session.advance(self._slice)
+            if self._session.busy:  # all of the slice was used
+                share = LOOK / max(time.perf_counter() - begun, 1e-9)
+                self._slice = min(max(round(share * self._slice), SLICE), LONGEST_SLICE)
+            return finished
 
     def _finish(self) -> None:
         """To what is seen, or bring the increment at work to its end: a log ends between increments."""
