@@ -61,16 +61,22 @@ class Outlet:
 
     def gone(self, packing: Packing) -> NDArray[np.bool_]:
         """True for the grains that have left, (N,)."""
-        aside = self.has_come_out(packing) & (np.abs(packing.x) > self.beside)
+        aside = self._below(packing, np.abs(packing.x) > self.beside)
         gone: NDArray[np.bool_] = aside | (packing.y < self.y)
         return gone
 
     def has_come_out(self, packing: Packing) -> NDArray[np.bool_]:
         """True for the grains that are in the space under the funnel, (N,)."""
-        come_out: NDArray[np.bool_] = packing.y < max((y for _, y in self.below), default=-math.inf)
-        if come_out.any():
-            come_out &= inside(list(self.below), packing.x, packing.y)
-        return come_out
+        return self._below(packing, np.ones(len(packing), dtype=np.bool_))
+
+    def _below(self, packing: Packing, asked: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """True for those of the grains that are asked for (N,) that are in that space: mostly none of them is low enough."""
+        top = max((y for _, y in self.below), default=-math.inf)
+        low: NDArray[np.bool_] = asked & (packing.y < top)
+        found = np.flatnonzero(low)
+        if len(found):
+            low[found] = inside(list(self.below), packing.x[found], packing.y[found])
+        return low
 
 
 @dataclass(frozen=True)
