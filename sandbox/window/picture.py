@@ -81,7 +81,7 @@ class Picture:
             rate=rate,
             paused=self._panes.paused,
             notices=notices,
-            told=[_told(seen) for seen in snapshots] if several else (),
+            told=[told_of(seen) for seen in snapshots] if several else (),
             kept=[kept_curve(curve) for curve in kept],
             flashes=lit,
         )
@@ -118,7 +118,7 @@ def kept_curve(kept: Kept) -> Curve:
     return Curve(kept.stroke, kept.force, colour, dash, kept.name, faint=True, events=kept.events)
 
 
-def _told(snapshot: Snapshot) -> tuple[str, ...]:
+def told_of(snapshot: Snapshot) -> tuple[str, ...]:
     """What the window says in a pane of its own."""
     if snapshot.phase == "failed":
         return (words.PANE_FAILED.format(error=words.say(snapshot.error)),)

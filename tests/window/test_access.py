@@ -102,6 +102,31 @@ def test_everything_that_is_shown_has_a_name_and_a_place_in_the_tree(desk: Desk)
         desk.until(lambda: not desk.app._splash and bool(desk.app.stage.picture.panes()))
 
 
+def test_while_packings_side_by_side_are_built_each_is_told_of_by_itself(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A child that is named twice ends AccessKit, and the program with it."""
+    built = threading.Event()
+
+    def slowly(session: FakeSession, progress: Any) -> None:
+        progress("packing the grains", 0.5)
+        built.wait(20.0)
+        session.built += 1
+
+    monkeypatch.setattr(FakeSession, "build", slowly)
+    panes = desk.app.stage.panes
+    desk.app.stage.start("intruder", packings=("regular", "mixed", "auxetic"))
+    desk.until(lambda: all(one.phase == "building" and one.text for one in panes.snapshots))
+    tree = seen(desk)
+    built.set()
+    named = [name for node in tree.nodes.values() for name in node.children]
+    assert len(named) == len(set(named)) == len(tree.nodes) - 1
+    told = [node.text for name, node in tree.nodes.items() if name.startswith("told/")]
+    assert len(told) == 3
+    for packing, text in zip(panes.packings, told, strict=True):
+        assert text.startswith(f"{words.PACKINGS[packing]}: "), text
+
+
 def test_every_stop_of_the_keyboard_is_in_the_tree(desk: Desk) -> None:
     tree = seen(desk)
     for stop in desk.app.stage.focus.stops():

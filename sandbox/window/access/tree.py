@@ -23,7 +23,7 @@ from sandbox.window.guide import Guide
 from sandbox.window.keys import Action
 from sandbox.window.pages import Pages
 from sandbox.window.panel.panel import Panel
-from sandbox.window.picture import progress_of
+from sandbox.window.picture import told_of
 from sandbox.window.question import ExportQuestion
 from sandbox.window.sections import Value
 from sandbox.window.sketched import pen, told
@@ -144,8 +144,7 @@ class Tree:
             self._at_top(button("failed/menu", words.BUTTONS["menu"], self._act(Action.MENU)))
             return "failed/reset"
         frames = [pane[0] for pane in stage.picture.panes()]
-        for progress in filter(None, map(progress_of, stage.panes.snapshots)):
-            self._at_top(label("progress", progress))
+        self._told()
         if not frames:
             self._at_top(button("cancel", words.CANCEL, self._act(Action.BACK)))
             return "cancel"
@@ -160,6 +159,14 @@ class Tree:
         if focus == CANVAS or (focus.startswith(CANVAS) and focus not in self.nodes):
             focus = next((name for name in self.nodes if name.startswith(focus + "/")), CANVAS)
         return chosen(focus, self.nodes)
+
+    def _told(self) -> None:
+        """Of every pane: what is being built, or that it came to an error."""
+        panes = self._parts.stage.panes
+        for k, (packing, snapshot) in enumerate(zip(panes.packings, panes.snapshots, strict=True)):
+            name = f"{words.PACKINGS.get(packing, packing)}: " if panes.comparing else ""
+            for text in told_of(snapshot):
+                self._at_top(label(f"told/{k}", f"{name}{text}"))
 
     def _question(self) -> str:
         question = self._parts.question
