@@ -142,7 +142,17 @@ def _handle_state(run: Run, handle: Handle) -> HandleState:
         at = run.setup.box_handle
         place = (box.width, box.height) if at is None else at(box)
         x, target = _nearest_image(place[0], target, box) if at is not None else (place[0], target)
-        return HandleState(handle.body, handle.label, x, place[1], target, 0.0, 0.0, handle.radius)
+        return HandleState(
+            name=handle.body,
+            label=handle.label,
+            x=x,
+            y=place[1],
+            target=target,
+            fx=0.0,
+            fy=0.0,
+            radius=handle.radius,
+            axis=handle.direction,  # whatever else a hand wants of it, it goes along that line
+        )
     body = run.setup.world[handle.body]
     push = run.last.reactions[run.setup.world.index(handle.body), :2]
     # The hand's force along its pull, as it is plotted; what goes across is borne by the guide.

@@ -119,8 +119,11 @@ class Mouse:
             return pygame.SYSTEM_CURSOR_HAND
         if handle.axis is None:
             return pygame.SYSTEM_CURSOR_SIZEALL
-        upright = abs(handle.axis[1]) >= abs(handle.axis[0])
-        return pygame.SYSTEM_CURSOR_SIZENS if upright else pygame.SYSTEM_CURSOR_SIZEWE
+        across, up = map(abs, handle.axis)
+        if min(across, up) > 0.5 * max(across, up):
+            rising = handle.axis[0] * handle.axis[1] > 0.0
+            return pygame.SYSTEM_CURSOR_SIZENESW if rising else pygame.SYSTEM_CURSOR_SIZENWSE
+        return pygame.SYSTEM_CURSOR_SIZENS if up > across else pygame.SYSTEM_CURSOR_SIZEWE
 
 
 def handle_at(

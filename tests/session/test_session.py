@@ -282,3 +282,24 @@ def test_wherever_a_change_is_broken_off_all_is_as_before(
     assert allowed >= (1 if change.name != "step" else 0)
     if compiles:  # it can be broken off when that is done
         assert tells > compiles[-1]
+
+
+@pytest.mark.parametrize("scene", ["biaxial_periodic", "avalanches"])
+def test_the_handle_of_a_box_goes_along_the_line_that_it_names(scene: str) -> None:
+    """Wherever a hand pulls it: what is drawn at it and told of it is that line."""
+    session = Session(scene, "mixed", 1, {"grains": 60})
+    session.build()
+    (before,) = session.frame().handles
+    axis = before.axis
+    assert axis is not None
+    assert math.hypot(*axis) == pytest.approx(1.0)
+    by, across = 0.2, 0.7
+    wanted = by * axis[0] - across * axis[1], by * axis[1] + across * axis[0]
+    session.submit(Grab("box"))
+    session.submit(Move("box", before.x + wanted[0], before.y + wanted[1]))
+    for _ in range(60):
+        while not session.advance() and session.busy:
+            pass
+    (after,) = session.frame().handles
+    went = after.x - before.x, after.y - before.y
+    assert went == pytest.approx((by * axis[0], by * axis[1]), abs=1e-6)
