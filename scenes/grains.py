@@ -91,7 +91,7 @@ PAPER = (
         "",
         0.0,
         1.0,
-        "μ of the paper, in place of the contact stiffness: grain over contact stiffness (paper: 0.1); 0: not used",
+        "the paper's μ, in place of the contact stiffness: grain over contact stiffness (paper: 0.1); 0: not used",
         live=True,
     ),
 )

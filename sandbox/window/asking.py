@@ -155,10 +155,13 @@ class Asking(Silent):
         if self.sketch is not None and self.stage.focus.name == SKETCH and action in WAYS:
             self._go(*WAYS[action])
             return True
-        if action in MOVES:
+        return action in MOVES and self.refuses()
+
+    def refuses(self) -> bool:
+        """Is nothing to be moved before there is an answer? Then that is said."""
+        if self.predict is not None:
             self.stage.toast(words.ASK_FIRST)
-            return True
-        return False
+        return self.predict is not None
 
     def choose(self, index: int) -> None:
         """One of the options."""
@@ -202,10 +205,7 @@ class Asking(Silent):
 
     def refuse(self, pos: tuple[int, int]) -> bool:
         """A press on a canvas: first the answer."""
-        if self.predict is None or self.stage.picture.pane_at(pos) is None:
-            return False
-        self.stage.toast(words.ASK_FIRST)
-        return True
+        return self.stage.picture.pane_at(pos) is not None and self.refuses()
 
     def _key(self, event: pygame.event.Event) -> bool:
         name, key = self.stage.focus.name, event.key

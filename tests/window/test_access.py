@@ -29,6 +29,7 @@ from sandbox.window.access.tree import Tree
 from sandbox.window.asking import SKETCH
 from sandbox.window.canvas.arrows import FINE_STEP, STEP
 from sandbox.window.focus import CANVAS
+from sandbox.window.solvers.snapshot import Snapshot
 from sandbox.words import language, words
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
@@ -314,6 +315,7 @@ def test_every_reading_under_the_canvases_is_in_the_tree(
             continue
         for word in re.findall(r"[^\W\d_]+", one):  # the plot has fewer digits
             assert word in there, one
+    assert words.GRAINS_OUT.format(count=3) in there
     for frame in frames:
         for values in (frame.curve_force, frame.curve_stroke):
             assert shown(float(values[-1])) in there
@@ -324,13 +326,16 @@ def test_readings_are_said_where_a_run_has_come_to_rest(desk: Desk) -> None:
     frame = desk.app.stage.picture.panes()[0][0]
     speech.begin()
 
-    def at(increment: int, now: float) -> list[str]:
+    def at(increment: int, now: float, busy: bool = False, missing: int = 0) -> list[str]:
         note = f"height {increment} R"
         curve = np.array([0.0, 0.25 * increment])
-        moved = replace(frame, increment=increment, curve_force=curve, notices=(note,))
+        moved = replace(frame, increment=increment, busy=busy, curve_force=curve, notices=(note,))
+        snapshots = [Snapshot("running", frame=moved), *[Snapshot("building")] * missing]
         pane = moved, *desk.app.stage.picture.panes()[0][1:]
         speech.stage = SimpleNamespace(  # type: ignore[assignment]
-            picture=SimpleNamespace(panes=lambda: [pane]), renderer=desk.app.stage.renderer
+            picture=SimpleNamespace(panes=lambda: [pane]),
+            panes=SimpleNamespace(snapshots=snapshots),
+            renderer=desk.app.stage.renderer,
         )
         return list(speech._from_the_readings(now))
 
@@ -340,6 +345,12 @@ def test_readings_are_said_where_a_run_has_come_to_rest(desk: Desk) -> None:
     assert note == "height 8 R"
     assert "force on the intruder 2 k R" in said
     assert at(8, 104.0) == []
+    for now in (105.0, 109.0):  # an increment that takes long has not come to rest
+        assert at(9, now, busy=True) == []
+    for now in (110.0, 114.0):  # nor have packings side by side of which one is still built
+        assert at(10, now, missing=1) == []
+    assert at(10, 115.0) == []
+    assert at(10, 116.0)
 
 
 SKETCHED = """

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
+from sandbox.draw.numbers import number
 from sandbox.draw.widgets.controls import (
+    Bars,
     Button,
     Choice,
     Fact,
@@ -49,9 +51,9 @@ def _node(control: Simple, made: Callable[..., Node], name: str, use: Use, go: G
         case Slider():
             return _slider(control, made, focus, use)
         case Stepper(title=title, value=value):
-            number = Number(float(value), float(control.low), float(control.high), 1.0)
-            does = focus | changes(number, lambda value: use(name, round(value)))
-            return made("SPIN_BUTTON", title, str(value), about, number, does=does)
+            scale = Number(float(value), float(control.low), float(control.high), 1.0)
+            does = focus | changes(scale, lambda value: use(name, round(value)))
+            return made("SPIN_BUTTON", title, str(value), about, scale, does=does)
         case Switch(title=title, on=on):
             does = focus | {"CLICK": lambda _: use(name, not on)}
             return made("SWITCH", title, about=about, on=on, does=does)
@@ -74,7 +76,11 @@ def _node(control: Simple, made: Callable[..., Node], name: str, use: Use, go: G
             # A button that is "on" is heard as pressed, where "expanded" is not told.
             return made("BUTTON", title, open=is_open, on=is_open, does=does)
         case Fact(title=title, value=said):
-            return made("LABEL", text=f"{title}: {said}")
+            return made("LABEL", text=f"{title}: {said}" if said else title)
+        case Bars():
+            shares = words.LIST_SIGN.join(number(100.0 * share, 0) for share in control.shares)
+            bars = words.BARS_TOLD.format(low=control.low, high=control.high, shares=shares)
+            return made("LABEL", text=f"{control.title}: {control.value}. {bars}")
         case Note(text=text):
             return made("LABEL", text=text)
     return made("LABEL")
@@ -83,14 +89,14 @@ def _node(control: Simple, made: Callable[..., Node], name: str, use: Use, go: G
 def _slider(slider: Slider, made: Callable[..., Node], focus: Mapping[str, Do], use: Use) -> Node:
     name, value, scale = slider.name, slider.value, slider.range
     step = abs(scale.stepped(value, 1 if value < slider.high else -1) - value)
-    number = Number(value, slider.low, slider.high, step)
-    does = {**focus, **changes(number, lambda value: use(name, value))}
+    reach = Number(value, slider.low, slider.high, step)
+    does = {**focus, **changes(reach, lambda value: use(name, value))}
     does |= {"INCREMENT": lambda _: use(name, scale.stepped(value, 1))}
     does |= {"DECREMENT": lambda _: use(name, scale.stepped(value, -1))}
     # Not every system tells the unit with the value.
     about = f"[{slider.unit}] {slider.help}" if slider.unit else slider.help
     text = f"{slider.said} {slider.unit}".rstrip()
-    return made("SLIDER", slider.title, text, about, number, does=does)
+    return made("SLIDER", slider.title, text, about, reach, does=does)
 
 
 def _choice(choice: Choice, rect: Edges, use: Use, go: Go) -> tuple[Node, Sequence[Node]]:

@@ -13,7 +13,7 @@ from sandbox.window.canvas.arrows import FINE_STEP, STEP, Arrows
 from sandbox.window.focus import CANVAS
 from sandbox.words import words
 
-Go = Callable[[str], None]
+Take = Callable[[str], bool]  # a handle by the name of its stop; False: not now, which is said
 
 
 def hand_keys() -> str:
@@ -21,18 +21,20 @@ def hand_keys() -> str:
     return words.HAND_KEYS.format(step=number(STEP, 2), fine=number(FINE_STEP, 2))
 
 
-def nodes_of_handle(handle: HandleState, frame: Frame, arrows: Arrows, go: Go) -> Iterator[Node]:
-    """They tell where the body is [R], and lead it as the arrow keys do, or to a place."""
+def nodes_of_handle(
+    handle: HandleState, frame: Frame, arrows: Arrows, take: Take
+) -> Iterator[Node]:
+    """They tell where the body is [R], and lead it as the arrow keys do, or to a place, once it is taken."""
     x0, y0, x1, y1 = frame.bounds
     name, title = f"{CANVAS}/{handle.name}", words.say(handle.label)
     if handle.axis is None:
-        yield _along((1.0, 0.0), (x0, x1), f"{name}/x", f"{title}, x", handle, arrows, go)
-        yield _along((0.0, 1.0), (y0, y1), f"{name}/y", f"{title}, y", handle, arrows, go)
+        yield _along((1.0, 0.0), (x0, x1), f"{name}/x", f"{title}, x", handle, arrows, take)
+        yield _along((0.0, 1.0), (y0, y1), f"{name}/y", f"{title}, y", handle, arrows, take)
     else:
         x, y = handle.axis
         axis = (-x, -y) if (y if abs(y) > abs(x) else x) < 0.0 else (x, y)  # more: right, or up
         place, far = _place(handle, axis), max(x1 - x0, y1 - y0)
-        yield _along(axis, (place - far, place + far), name, title, handle, arrows, go)
+        yield _along(axis, (place - far, place + far), name, title, handle, arrows, take)
 
 
 def _place(handle: HandleState, axis: tuple[float, float]) -> float:
@@ -46,22 +48,22 @@ def _along(
     title: str,
     handle: HandleState,
     arrows: Arrows,
-    go: Go,
+    take: Take,
 ) -> Node:
-    place = _place(handle, axis)
+    place, focus = _place(handle, axis), f"{CANVAS}/{handle.name}"
 
     def lead_to(to: float) -> None:
-        go(f"{CANVAS}/{handle.name}")
-        by = to - place
-        arrows.lead_to(handle, handle.x + by * axis[0], handle.y + by * axis[1])
+        if take(focus):
+            by = to - place
+            arrows.lead_to(handle, handle.x + by * axis[0], handle.y + by * axis[1])
 
     def lead(by: float) -> None:
-        go(f"{CANVAS}/{handle.name}")
-        arrows.lead(handle, by * axis[0], by * axis[1])
+        if take(focus):
+            arrows.lead(handle, by * axis[0], by * axis[1])
 
     told, low, high = (round(value, PLACE_DECIMALS) for value in (place, *ends))
     number = Number(told, low, high, STEP)
-    does: dict[str, Do] = {"FOCUS": lambda _: go(f"{CANVAS}/{handle.name}")}
+    does: dict[str, Do] = {"FOCUS": lambda _: arrows.stage.focus.go(focus, True)}
     does |= changes(number, lead_to)
     does |= {"INCREMENT": lambda _: lead(STEP), "DECREMENT": lambda _: lead(-STEP)}
     about = f"[R] {hand_keys()}"

@@ -30,6 +30,8 @@ def nodes_of_readings(stage: Stage) -> Iterator[Node]:
     yield label("line", line, stage.renderer.layout.status)
     for k, (frame, name) in enumerate(zip(frames, names_of(frames), strict=True)):
         yield label(f"status/{k}", f"{name}{lamp(frame, stage.renderer.theme).words}")
+        if name and frame.grains_out:  # one that is alone has it in the line
+            yield label(f"out/{k}", f"{name}{words.GRAINS_OUT.format(count=frame.grains_out)}")
         for what, text in zip(("force", "stroke"), _measured(frame), strict=False):
             yield label(f"{what}/{k}", f"{name}{text}", stage.renderer.layout.plot)
         for place, text in enumerate(said_of(frame)):
@@ -51,8 +53,9 @@ def names_of(frames: Sequence[Frame]) -> list[str]:
 
 
 def reading(stage: Stage, frame: Frame) -> str:
-    """Force, way, and how sure that is, in a breath."""
-    return ", ".join([*_measured(frame), lamp(frame, stage.renderer.theme).words])
+    """Force, way, grains out, and how sure that is, in a breath."""
+    out = [words.GRAINS_OUT.format(count=frame.grains_out)] if frame.grains_out else []
+    return ", ".join([*_measured(frame), *out, lamp(frame, stage.renderer.theme).words])
 
 
 def _measured(frame: Frame) -> list[str]:

@@ -57,6 +57,8 @@ class Speech:
         """Somebody listens from now on: what was before is not said."""
         for _ in self.new():
             pass
+        if not frames_of(self.stage):
+            self._card = ()  # which nobody can have read yet
         self._run.take()
         self._sketch.take()
         self._pen.take()
@@ -79,7 +81,9 @@ class Speech:
         card: tuple[str, ...] = ()
         if self.guide.on:
             page = self.guide.page
-            card = page.say, page.ask, page.hint, page.do, page.why
+            step = words.TOUR_STEP.format(step=page.step + 1, steps=page.steps)
+            done = words.TOUR_DONE.format(do=page.do) if page.done and page.do else ""
+            card = page.title, step, page.say, page.ask, page.hint, page.do, done, page.why
         before, self._card = self._card, card
         yield from (text for text in card if text and text not in before)
 
@@ -108,8 +112,9 @@ class Speech:
     def _from_the_readings(self, now: float) -> Iterator[str]:
         """Force, way, and what stands under a canvas, once a run has come to rest: while it moves they would drown all else."""
         frames = frames_of(self.stage)
-        state = tuple((f.scene, f.packing, f.increment, f.busy, f.notices) for f in frames)
-        if not self._run.settles(state, now):
+        state = tuple((f.scene, f.packing, f.increment, f.notices) for f in frames)
+        missing = any(seen.frame is None for seen in self.stage.panes.snapshots)
+        if missing or any(f.busy for f in frames) or not self._run.settles(state, now):
             return
         notes = []
         for frame, name in zip(frames, names_of(frames), strict=True):

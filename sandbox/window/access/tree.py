@@ -180,9 +180,11 @@ class Tree:
     def _card(self) -> None:
         guide = self._parts.guide
         page = guide.page
-        texts = [page.say, page.ask, page.hint, page.do, page.why]
         step = words.TOUR_STEP.format(step=page.step + 1, steps=page.steps)
+        do = words.TOUR_DONE.format(do=page.do) if page.done and page.do else page.do
+        texts = [page.say, do, page.why]
         nodes = [label(f"tour/text/{k}", text) for k, text in enumerate(texts) if text]
+        options: list[Node] = []
 
         def press(name: str) -> Callable[[], None]:
             return lambda: guide.press(name)
@@ -194,17 +196,22 @@ class Tree:
                 on = page.chosen == index
                 does |= {"CLICK": lambda _, name=name: guide.press(name)}  # type: ignore[misc]
                 title = page.options[index]
-                nodes.append(Node(name, "RADIO_BUTTON", title, on=on, does=does))
+                options.append(Node(name, "RADIO_BUTTON", title, on=on, does=does))
             elif name == FIELD and page.field is not None:
                 does |= {"SET_VALUE": self._fill}
                 title = f"{page.ask} [{page.field.unit}]" if page.field.unit else page.ask
-                nodes.append(Node(name, "TEXT_INPUT", title, text=page.field.text, does=does))
+                text, about = page.field.text, page.hint
+                nodes.append(Node(name, "TEXT_INPUT", title, text, about, does=does))
             elif name in guide.titles:
                 nodes.append(button(name, guide.titles[name], press(name), does=does))
             else:
                 # Of such a thing no system tells the value.
                 about = f"{self._sketch(guide.asking)} {page.hint}".strip()
                 nodes.append(Node(name, "CANVAS", page.ask, about=about, does=does))
+        if options:  # a reader says the question with them, and how many there are
+            self._add(*options)
+            names = tuple(node.name for node in options)
+            nodes.insert(1, Node(OPTION, "RADIO_GROUP", page.ask, children=names))
         self._group("tour", "GROUP", f"{page.title}, {step}", nodes, rect=edges(guide.rect))
 
     def _sketch(self, asking: Asking) -> str:
@@ -226,10 +233,18 @@ class Tree:
         asking = self._parts.guide.asking
         nodes = [*nodes_of_readings(stage), *nodes_of_sketch(asking, frames)]
         for handle in frame.handles:
-            nodes += nodes_of_handle(handle, frame, self._parts.arrows, self._go)
+            state = self._parts.arrows.state_of(handle.name) or handle
+            nodes += nodes_of_handle(state, frame, self._parts.arrows, self._take)
         places = stage.picture.panes()
         about = hand_keys() if frame.handles else ""
         self._group(CANVAS, "CANVAS", title, nodes, about=about, rect=edges(places[0][2]))
+
+    def _take(self, name: str) -> bool:
+        """A handle, to be led; not before a question is answered."""
+        if self._parts.guide.asking.refuses():
+            return False
+        self._go(name)
+        return True
 
     def _time(self) -> None:
         timeline = self._parts.timeline

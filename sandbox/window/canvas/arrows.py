@@ -58,8 +58,21 @@ class Arrows(Silent):
         frame, focus = self.stage.panes.snapshot.frame, self.stage.focus
         if frame is None or not frame.handles or not focus.on_canvas:
             return None
-        name = focus.name.partition("/")[2]
-        return next((h for h in frame.handles if h.name == name), frame.handles[0])
+        name, names = focus.name.partition("/")[2], [handle.name for handle in frame.handles]
+        return self.state_of(name if name in names else names[0])
+
+    def state_of(self, name: str) -> HandleState | None:
+        """A handle where it has come nearest to the hand, or else farthest: one that is locked holds back no other."""
+        panes = self.stage.panes
+        frames = [frame for seen in (panes.snapshot, *panes.snapshots) if (frame := seen.frame)]
+        found = [(h, frame.stroke) for frame in frames for h in frame.handles if h.name == name]
+
+        def behind(state: tuple[HandleState, float]) -> tuple[float, float]:
+            handle, stroke = state
+            there = (handle.x, handle.y)
+            return math.dist(handle.target or there, there), -stroke
+
+        return min(found, key=behind)[0] if found else None
 
     def act(self, action: Action) -> bool:
         """An arrow key, with the keyboard on the canvas."""
