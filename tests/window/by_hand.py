@@ -105,6 +105,8 @@ def assert_replayed(session: Session, log: Log) -> None:
     assert again.run.checkpoints.increments == session.run.checkpoints.increments
     seen, there = session.frame(), again.frame()
     assert np.array_equal(seen.curve_force, there.curve_force)
+    assert np.array_equal(seen.contacts.fx, there.contacts.fx)
+    assert seen.residual == there.residual
     assert (seen.grains_out, seen.can_undo, seen.can_redo) == (
         there.grains_out,
         there.can_undo,

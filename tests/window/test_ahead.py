@@ -29,7 +29,7 @@ from tests.window.by_hand import SCENES, ByHand, assert_replayed, by_hand, rows
 
 SLICE = 60  # iterations: most increments take several slices here
 BOUNDED = settings(
-    max_examples=6,
+    max_examples=5,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
@@ -69,9 +69,26 @@ def commands(handle: str) -> st.SearchStrategy[Command]:
     return st.one_of(hand, hand, hand, other)
 
 
-def deeds(handle: str, most: int = 10) -> st.SearchStrategy[list[tuple[Command, int, int]]]:
-    one = st.tuples(commands(handle), st.integers(0, 8), st.integers(0, 20))
-    return st.lists(one, min_size=1, max_size=most)
+Deed = tuple[Command, int, int]
+
+
+def glide(handle: str) -> st.SearchStrategy[list[Deed]]:
+    """A hand in motion: it asks for a place further on in every picture, and then for something else."""
+    pictures = st.lists(st.tuples(st.integers(0, 2), st.integers(1, 20)), min_size=2, max_size=8)
+    return st.builds(
+        lambda each, then: [
+            *((Move(handle, 6.0, -41.0 - k), *one) for k, one in enumerate(each)),
+            (then, 1, 10),
+        ],
+        pictures,
+        commands(handle),
+    )
+
+
+def deeds(handle: str, most: int = 5) -> st.SearchStrategy[list[Deed]]:
+    one = st.tuples(commands(handle), st.integers(0, 8), st.integers(0, 20)).map(lambda it: [it])
+    many = st.lists(st.one_of(glide(handle), one), min_size=1, max_size=most)
+    return many.map(lambda lists: [deed for deeds in lists for deed in deeds])
 
 
 def begin(hands: ByHand, handle: str) -> None:
@@ -81,7 +98,7 @@ def begin(hands: ByHand, handle: str) -> None:
     hands.slices(60)
 
 
-def act(hands: ByHand, steps: Sequence[tuple[Command, int, int]]) -> None:
+def act(hands: ByHand, steps: Sequence[Deed]) -> None:
     """Each command, then pictures with some slices of work between them."""
     for command, pictures, slices in steps:
         hands.conductor.submit(command)
@@ -96,6 +113,7 @@ def check_replay(scene: str, data: st.DataObject) -> None:
     handle = SCENES[scene][0]
     hands = by_hand(scene)
     begin(hands, handle)
+    act(hands, data.draw(glide(handle)))
     act(hands, data.draw(deeds(handle)))
     hands.finish()
     (session,) = hands.sessions
@@ -182,7 +200,8 @@ def test_packings_side_by_side_stay_in_step(data: st.DataObject) -> None:
         hands.conductor.show()
         turns = {solver._member.shown.turn for solver in hands.solvers if solver._member.shown}
         assert max(turns) - min(turns) <= 1  # one that was seen as it was made may be at work still
-    hands.finish()
+    hands.conductor.pause(True)
+    hands.settle()
     logs = [session.log() for session in hands.sessions]
     assert len({(log.end, log.commands) for log in logs}) == 1
     for session, log in zip(hands.sessions, logs, strict=True):

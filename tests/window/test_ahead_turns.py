@@ -164,8 +164,13 @@ def test_moves_that_are_dropped_come_again() -> None:
     hands.work()  # an increment after that is ready now
     hands.conductor.submit(Change("regular_poisson_ratio", 0.4))
     hands.work()
-    done = [command for _, command in hands.sessions[0].log().commands]
-    assert done[-2:] == [Move("intruder", x + 20.0, y), Change("regular_poisson_ratio", 0.4)]
+    done = hands.sessions[0].log().commands[-3:]
+    assert [command for _, command in done] == [
+        Move("intruder", 40.0, y),
+        Move("intruder", x + 20.0, y),
+        Change("regular_poisson_ratio", 0.4),
+    ]
+    assert done[1][0] == done[2][0]
 
 
 def test_a_pause_holds_what_is_seen_and_a_step_is_one_increment() -> None:
