@@ -1,0 +1,128 @@
+"""Bodies that slide: ``core.rigid.RigidWorld.advance`` and ``core.tries.Tries.move_bodies`` as kernels.
+
+Bodies that a person has drawn are not there; a body that is dragged anywhere is moved by pymunk on the desk, and by nothing here.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from core.hand import SLACK
+from core.jit import kernel
+from core.rigid_contacts import EDGE
+from sandbox.web.increment.systems import (
+    ASKED,
+    AXIS_X,
+    AXIS_Y,
+    HOME_X,
+    HOME_Y,
+    LEAST,
+    MOST,
+    TO_X,
+    TO_Y,
+    X,
+    Y,
+)
+
+# What stopped a body.
+NOTHING, FORCE_LIMIT, END_OF_TRAVEL = 0, 1, 2
+
+
+@kernel(allocates=True)
+def rows_of(bodies):
+    """The primitives (M, 8) where the bodies are."""
+    rows = bodies.local.copy()
+    for m in range(rows.shape[0]):
+        body = bodies.owner[m]
+        x, y = bodies.places[body, X], bodies.places[body, Y]
+        rows[m, 1] += x
+        rows[m, 2] += y
+        if rows[m, 0] == EDGE:
+            rows[m, 5] += x
+            rows[m, 6] += y
+    return rows
+
+
+@kernel
+def slide(place, wanted, step):
+    """Move a body (PLACES,) along its axis by ``wanted`` and at most ``step`` [R], within its travel. Returns dx, dy, and what stops it."""
+    ax, ay = place[AXIS_X], place[AXIS_Y]
+    stood = (place[X] - place[HOME_X]) * ax + (place[Y] - place[HOME_Y]) * ay
+    asked = stood + min(max(wanted, -step), step)
+    allowed = min(max(asked, place[LEAST]), place[MOST])
+    amount = allowed - stood
+    dx, dy = amount * ax, amount * ay
+    place[X] += dx
+    place[Y] += dy
+    return dx, dy, END_OF_TRAVEL if allowed != asked else NOTHING
+
+
+@kernel
+def advance(place, x, y, step):
+    """Move a body towards (x, y) by at most ``step`` [R]."""
+    wanted = (x - place[X]) * place[AXIS_X] + (y - place[Y]) * place[AXIS_Y]
+    return slide(place, wanted, step)
+
+
+@kernel
+def pull_on(place, x, y):
+    """The way in which the hand pulls a body towards (x, y): a unit vector, 0 where the body is there."""
+    along = np.sign((x - place[X]) * place[AXIS_X] + (y - place[Y]) * place[AXIS_Y])
+    return along * place[AXIS_X], along * place[AXIS_Y]
+
+
+@kernel
+def force_on_body(reactions, body, pull_x, pull_y):
+    """``core.hand.force_on_body``."""
+    return -(reactions[body, 0] * pull_x + reactions[body, 1] * pull_y) + 0.0
+
+
+@kernel
+def too_much(force, strength):
+    """True if that is more force [k R] than the hand has."""
+    return force > strength * (1.0 + SLACK)
+
+
+@kernel
+def move_bodies(bodies, wanted, reactions, share, step, strength, moved, pulled, stopped):
+    """Each body that is asked for towards its target, or back where the grains push harder than the hand.
+
+    Fills ``moved`` (B, 2) [R], ``pulled`` (B, 2) and ``stopped`` (B,). Returns the hand's force before anything moved [k R].
+    """
+    before = -np.inf
+    for body in range(wanted.shape[0]):
+        moved[body, 0] = 0.0
+        moved[body, 1] = 0.0
+        stopped[body] = NOTHING
+        if wanted[body, ASKED] == 0.0:
+            continue
+        place, x, y = bodies.places[body], wanted[body, TO_X], wanted[body, TO_Y]
+        pull_x, pull_y = pull_on(place, x, y)
+        pulled[body, 0] = pull_x
+        pulled[body, 1] = pull_y
+        force = force_on_body(reactions, body, pull_x, pull_y)
+        before = max(before, force)
+        if share != 0.0:
+            if too_much(force, strength):
+                back_x, back_y = place[X] - step * pull_x, place[Y] - step * pull_y
+                dx, dy, _ = advance(place, back_x, back_y, step)
+                stopped[body] = FORCE_LIMIT
+            else:
+                dx, dy, why = advance(place, x, y, share * step)
+                stopped[body] = why
+            moved[body, 0] = dx
+            moved[body, 1] = dy
+        if share < 1.0:
+            stopped[body] = FORCE_LIMIT
+    return before
+
+
+@kernel
+def hand_force(wanted, pulled, reactions):
+    """The hand's force along its pull [k R], the largest of those on several bodies; nan where it pulls at nothing."""
+    most, any_pull = -np.inf, False
+    for body in range(wanted.shape[0]):
+        if wanted[body, ASKED] != 0.0:
+            any_pull = True
+            most = max(most, force_on_body(reactions, body, pulled[body, 0], pulled[body, 1]))
+    return most if any_pull else np.nan

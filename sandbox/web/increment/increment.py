@@ -1,0 +1,256 @@
+"""One load increment from beginning to end: ``core.quasistatic.Quasistatic`` as one kernel, in an open box.
+
+Bodies slide by at most a step; the grains are predicted, relaxed and observed; a hand that has overpowered itself goes back and
+tries a shorter way; what has failed is taken back. A scene without friction has coefficient 0, and runs code that knows of none.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from core.arrays import Floats
+from core.hand import MOST_TRIES, SHORTEST, SLACK
+from core.jit import kernel
+from sandbox.web.increment.bodies import hand_force, move_bodies, rows_of, too_much
+from sandbox.web.increment.contacts import (
+    Touching,
+    deep_grains,
+    pass_faces,
+    reactions,
+    touching,
+)
+from sandbox.web.increment.frictional import Origin, Pulls, no_pulls
+from sandbox.web.increment.relaxation import BUDGET, ITERATION_LIMIT, SUNK, relax
+from sandbox.web.increment.relaxation import COLLAPSED, NOT_FINITE
+from sandbox.web.increment.systems import ASKED, TURN, X, Y
+
+
+class Increment(NamedTuple):
+    """What one increment came to."""
+
+    reason: int  # why its relaxation ended
+    iterations: int  # force evaluations, all tries together
+    energy: float  # [k R²]
+    residual: float
+    scale: float  # mean contact force [k R]
+    share: float  # of a step that the hand's strength was enough for
+    force: float  # of the hand [k R]; nan where it pulls at nothing
+    stood: bool  # nothing has changed
+    moved: Floats  # (B, 2) [R]
+    stopped: np.ndarray  # (B,) see ``bodies``
+    unbalanced: Floats  # (2, N) [k R]; 0 if it failed
+    contacts: Touching
+    pulls: Pulls
+
+
+@kernel
+def failed(reason):
+    """True for what is taken back."""
+    return reason == NOT_FINITE or reason == COLLAPSED or reason == SUNK
+
+
+@kernel(allocates=True)
+def origin_of(system, rows, before):
+    """Where slips are counted from; bodies turn from ``before`` (B,) [rad]."""
+    memory, bodies = system.memory, system.bodies
+    count = memory.count[0]
+    turn = np.empty(rows.shape[0])
+    for m in range(turn.shape[0]):
+        body = bodies.owner[m]
+        turn[m] = bodies.places[body, TURN] - before[body, 2]
+    return Origin(
+        system.settings.coefficient,
+        system.grains.state.copy(),
+        rows,
+        turn,
+        system.grains.label,
+        memory.keys[:count].copy(),
+        memory.slips[:count].copy(),
+    )
+
+
+@kernel(allocates=True)
+def remember(memory, relaxed):
+    """Take up what contacts hold, and how far grains have turned."""
+    count = relaxed.known.shape[0]
+    if count > memory.keys.shape[0]:
+        raise MemoryError
+    memory.count[0] = count
+    memory.keys[:count] = relaxed.known
+    memory.slips[:count] = relaxed.slips
+    memory.spin[:] += relaxed.turned
+
+
+@kernel(allocates=True)
+def predict(grains, past, moved, contacts):
+    """Start from the displacement of the increment before, as far as the bodies go on as they went."""
+    before, now, along = 0.0, 0.0, 0.0
+    for body in range(moved.shape[0]):
+        old_x, old_y = past.moved[body, 0], past.moved[body, 1]
+        x, y = moved[body, 0], moved[body, 1]
+        before += old_x * old_x + old_y * old_y
+        now += x * x + y * y
+        along += x * old_x + y * old_y
+    if along <= 0.0:
+        return
+    share = min(along / before, 1.0)
+    held = np.zeros(grains.label.shape[0])
+    for k in range(contacts.pairs):
+        held[contacts.i[k]] = 1.0
+        held[contacts.j[k]] = 1.0
+    for k in range(contacts.bodies):
+        held[contacts.grain[k]] = 1.0
+    state, last = grains.state, past.last
+    for i in range(held.shape[0]):
+        x, y = last[0, i] * share, last[1, i] * share
+        distance = np.sqrt(x * x + y * y)
+        weight = held[i] * min(1.0, np.sqrt(now) / max(distance, 1e-12))
+        for row in range(5):
+            state[row, i] += last[row, i] * share * weight
+
+
+@kernel
+def shorter(share, tries, force, before, strength):
+    """``core.hand.Push.shorten``: the share of a way that is tried next, after ``tries`` of them."""
+    if force < np.inf and force > before:
+        aim = strength * (1.0 + 0.5 * SLACK)
+        share *= min(max((aim - before) / (force - before), 0.0), 0.7)
+    else:
+        share *= 0.25
+    return 0.0 if share < SHORTEST or tries > MOST_TRIES else share
+
+
+@kernel(allocates=True, forceinline=False)
+def attempt(system, origin, first, moved, rows_then, max_iterations, crossed):
+    """Predict and relax after the bodies have moved. Returns how it ended; the grains are as they were predicted."""
+    grains = system.grains
+    start = grains.state.copy()
+    predict(grains, system.past, moved, first)
+    rows_now = rows_of(system.bodies)
+    pass_faces(first, start, grains.state, rows_then, rows_now, crossed)
+    return relax(grains, rows_now, origin, None, system.settings, max_iterations, crossed)
+
+
+@kernel(allocates=True, forceinline=False)
+def increment(system, rubs):
+    """Move the bodies that are asked for one step towards their targets, and relax; with none: relax where things stand.
+
+    ``rubs`` is None where there is no friction, and 0 where there is some: it decides which code is made. Everything in
+    ``system`` is then as it is after the increment.
+    """
+    grains, bodies, settings = system.grains, system.bodies, system.settings
+    memory, past, wanted = system.memory, system.past, system.wanted
+    many = bodies.places.shape[0]
+    moved, pulled = np.zeros((many, 2)), np.zeros((many, 2))
+    stopped = np.zeros(many, np.int64)
+    asked = False
+    for body in range(many):
+        asked = asked or wanted[body, ASKED] != 0.0
+    limited = asked and settings.hand_strength < np.inf
+    share, tries, spent, still = 1.0, 1, 0, False
+    start, rows_then = grains.state.copy(), rows_of(bodies)
+    places = bodies.places.copy()
+    placed = np.empty((many, 3))
+    placed[:, 0], placed[:, 1], placed[:, 2] = places[:, X], places[:, Y], places[:, TURN]
+    first = touching(grains, rows_then, None)
+    deep = deep_grains(grains, first, settings.step)
+    told, told_stopped = moved.copy(), stopped.copy()
+    while True:
+        crossed = np.zeros((grains.label.shape[0], rows_then.shape[0]), np.bool_)
+        before = -np.inf
+        if still:
+            moved[:] = 0.0
+        else:
+            before = move_bodies(
+                bodies,
+                wanted,
+                past.reactions,
+                share,
+                settings.step,
+                settings.hand_strength,
+                moved,
+                pulled,
+                stopped,
+            )
+        most = 1 if still else settings.max_iterations
+        relaxed = started(system, first, moved, rows_then, placed, most, crossed, rubs)
+        reason = relaxed.reason
+        if still:
+            break
+        contacts, pulls = first, relaxed.pulls
+        if not failed(reason):
+            grains.state[:] = relaxed.state
+            rows = rows_of(bodies)
+            contacts = touching(grains, rows, None)
+            now = deep_grains(grains, contacts, settings.step)
+            if np.any(crossed) or np.any(now & ~deep):
+                reason = SUNK
+        good = not failed(reason)
+        force = np.inf
+        if good:
+            force = hand_force(wanted, pulled, reactions(bodies, contacts, pulls))
+        if limited:
+            way = False
+            for body in range(many):
+                way = way or moved[body, 0] != 0.0 or moved[body, 1] != 0.0
+            given_way = too_much(before, settings.hand_strength)
+            if way and not given_way and share > 0.0 and too_much(force, settings.hand_strength):
+                tries += 1
+                share = shorter(share, tries, force, before, settings.hand_strength)
+                spent += relaxed.iterations
+                grains.state[:] = start
+                bodies.places[:] = places
+                continue
+            if good and share == 0.0 and too_much(force, settings.hand_strength):
+                # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
+                spent += relaxed.iterations
+                grains.state[:] = start
+                bodies.places[:] = places
+                told[:], told_stopped[:] = moved, stopped
+                still = True
+                continue
+        if not good:
+            grains.state[:] = start
+            bodies.places[:] = places
+            contacts, pulls = touching(grains, rows_then, None), no_pulls(0)
+            relaxed.unbalanced[:] = 0.0
+        elif rubs is not None:
+            remember(memory, relaxed)
+        past.last[:] = grains.state - start
+        past.moved[:] = moved
+        past.reactions[:] = reactions(bodies, contacts, pulls)
+        break
+    if still:
+        grains.state[:] = start
+        bodies.places[:] = places
+        past.last[:] = 0.0
+        moved[:], stopped[:] = told, told_stopped
+        past.moved[:] = moved
+        contacts, pulls = touching(grains, rows_then, None), no_pulls(0)
+        reason = ITERATION_LIMIT if reason == BUDGET else reason
+    return Increment(
+        reason,
+        spent + relaxed.iterations,
+        relaxed.energy,
+        relaxed.residual,
+        relaxed.scale,
+        share,
+        hand_force(wanted, pulled, past.reactions),
+        still,
+        moved,
+        stopped,
+        relaxed.unbalanced,
+        contacts,
+        pulls,
+    )
+
+
+@kernel(allocates=True)
+def started(system, first, moved, rows_then, placed, most, crossed, rubs):
+    """``attempt`` with friction, or without."""
+    if rubs is None:
+        return attempt(system, None, first, moved, rows_then, most, crossed)
+    origin = origin_of(system, rows_then, placed)
+    return attempt(system, origin, first, moved, rows_then, most, crossed)

@@ -1,0 +1,243 @@
+"""One run in two blocks of memory, whole numbers and others: what a kernel sees of it, and a page that reads the same numbers.
+
+The blocks have room for all grains of the start. Of what is (rows, N) the rows lie one behind the other, N as it is now.
+``ints`` begins with the sizes in the order of ``Sizes`` and then has, for each part in the order of ``PARTS``, where it begins.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats
+from core.jit import kernel
+from sandbox.web.increment.systems import (
+    PLACES,
+    Bodies,
+    Grains,
+    Memory,
+    Past,
+    Settings,
+    System,
+)
+
+Indices = NDArray[np.int64]
+
+
+class Sizes(NamedTuple):
+    """The first numbers of ``ints``."""
+
+    grains: int  # N, now
+    bodies: int
+    primitives: int
+    room: int  # for contacts that remember a slip
+    contacts: int  # room for contacts to be shown
+    steps: int  # of the script
+    corners: int  # of the space under the outlet
+    capacity: int  # grains at the start
+
+
+class Course(NamedTuple):
+    """Places in the parts ``counts``: where a run stands apart from its grains (``sandbox.session.course``)."""
+
+    rows: int = 0  # increments made, that at the start counted
+    script: int = 1  # increments of the scripted drive so far; −1: it is off
+    stuck: int = 2  # increments in a row in which all the hand's strength moved nothing
+    out: int = 3  # grains that have left
+    left: int = 4  # and in the latest increment
+    touched: int = 5  # something was changed: relax where things stand, in so many increments at most
+    reason: int = 6  # why the latest relaxation ended
+    iterations: int = 7  # of the latest increment
+    pairs: int = 8  # contacts between grains that are shown
+    shown: int = 9  # all contacts that are shown, those with bodies last
+    driven: int = 10  # the body that the script drives and the curve is about
+
+
+class Row(NamedTuple):
+    """Places in the part ``row``: what the latest increment came to."""
+
+    stroke: int = 0  # [R]
+    resisting: int = 1  # [k R]
+    residual: int = 2
+    scale: int = 3  # mean contact force [k R]
+    energy: int = 4  # [k R²]
+    share: int = 5  # of a step that the hand's strength was enough for
+    exit_stroke: int = 6  # when a grain last left
+    exit_force: int = 7
+    direction_x: int = 8  # of the drive
+    direction_y: int = 9
+    outlet: int = 10  # who is below has left [R]
+    beside: int = 11  # or lies under the funnel further from the middle than this [R]
+
+
+COUNTS, ROW, SIZES = Course(), Row(), Sizes(*range(8))
+PLACE_OF_OFFSETS = 8
+
+
+class Parts(NamedTuple):
+    """For each part: which number of ``ints`` says where it begins."""
+
+    state: int  # of floats, from here
+    rest_radius: int
+    poisson_ratio: int
+    contact_stiffness: int
+    spin: int
+    last: int
+    slips: int
+    places: int
+    local: int
+    moved: int
+    reactions: int
+    targets: int  # (B, 3) as ``System.wanted``: where the hand wants bodies
+    wanted: int
+    settings: int
+    row: int
+    script: int  # (steps, 2) where the driven body goes [R]
+    corners: int  # (corners, 2) [R]
+    force: int  # (contacts,) of contacts that are shown [k R]
+    ends: int  # (2, contacts) where those with bodies touch [R]
+    label: int  # of ints, from here
+    keys: int
+    count: int
+    owner: int
+    counts: int
+    stopped: int  # (B,) why, in the latest increment
+    blocked: int  # (B,) is it stopped until the hand moves?
+    first: int  # (contacts,) grains of contacts that are shown
+    second: int  # the other; −1: a body
+
+
+PART = Parts(*range(PLACE_OF_OFFSETS, PLACE_OF_OFFSETS + len(Parts._fields)))
+FIRST_INT = "label"
+HEAD = PLACE_OF_OFFSETS + len(Parts._fields)
+
+
+def lengths(sizes: Sizes) -> dict[str, int]:
+    """How long each part is, in the order of ``Parts``."""
+    n, b, m = sizes.capacity, sizes.bodies, sizes.primitives
+    return {
+        "state": 5 * n,
+        "rest_radius": n,
+        "poisson_ratio": n,
+        "contact_stiffness": n,
+        "spin": n,
+        "last": 5 * n,
+        "slips": sizes.room,
+        "places": PLACES * b,
+        "local": 8 * m,
+        "moved": 2 * b,
+        "reactions": 3 * b,
+        "targets": 3 * b,
+        "wanted": 3 * b,
+        "settings": len(Settings._fields),
+        "row": len(ROW),
+        "script": 2 * sizes.steps,
+        "corners": 2 * sizes.corners,
+        "force": sizes.contacts,
+        "ends": 2 * sizes.contacts,
+        "label": n,
+        "keys": sizes.room,
+        "count": 1,
+        "owner": m,
+        "counts": len(COUNTS),
+        "stopped": b,
+        "blocked": b,
+        "first": sizes.contacts,
+        "second": sizes.contacts,
+    }
+
+
+def blank(sizes: Sizes) -> tuple[Indices, Floats]:
+    """Both blocks, with nothing in them but sizes and offsets."""
+    at = {True: 0, False: HEAD}
+    offsets, of_floats = [], True
+    for name, length in lengths(sizes).items():
+        of_floats = of_floats and name != FIRST_INT
+        offsets.append(at[of_floats])
+        at[of_floats] += length
+    ints, floats = np.zeros(at[False], dtype=np.int64), np.zeros(at[True])
+    ints[:HEAD] = [*sizes, *offsets]
+    return ints, floats
+
+
+class Kept(NamedTuple):
+    """Both blocks, for kernels."""
+
+    ints: Indices
+    floats: Floats
+
+
+@kernel(allocates=True)
+def floats_at(kept, which, size):
+    """So many numbers of the part that ``ints[which]`` says the place of."""
+    at = kept.ints[which]
+    return kept.floats[at : at + size]
+
+
+@kernel(allocates=True)
+def ints_at(kept, which, size):
+    """The same of whole numbers."""
+    at = kept.ints[which]
+    return kept.ints[at : at + size]
+
+
+@kernel(allocates=True)
+def counts_of(kept):
+    """The part ``counts``."""
+    return ints_at(kept, PART.counts, len(COUNTS))
+
+
+@kernel(allocates=True)
+def row_of(kept):
+    """The part ``row``."""
+    return floats_at(kept, PART.row, len(ROW))
+
+
+@kernel(allocates=True)
+def system_in(kept):
+    """What an increment works on; it writes into the blocks."""
+    ints = kept.ints
+    n, b, m, room = (
+        ints[SIZES.grains],
+        ints[SIZES.bodies],
+        ints[SIZES.primitives],
+        ints[SIZES.room],
+    )
+    settings = floats_at(kept, PART.settings, 7)
+    return System(
+        Grains(
+            floats_at(kept, PART.state, 5 * n).reshape(5, n),
+            floats_at(kept, PART.rest_radius, n),
+            floats_at(kept, PART.poisson_ratio, n),
+            floats_at(kept, PART.contact_stiffness, n),
+            ints_at(kept, PART.label, n),
+        ),
+        Bodies(
+            floats_at(kept, PART.places, PLACES * b).reshape(b, PLACES),
+            floats_at(kept, PART.local, 8 * m).reshape(m, 8),
+            ints_at(kept, PART.owner, m),
+        ),
+        Settings(
+            settings[0],
+            settings[1],
+            settings[2],
+            settings[3],
+            int(settings[4]),
+            settings[5],
+            settings[6],
+        ),
+        Memory(
+            floats_at(kept, PART.spin, n),
+            ints_at(kept, PART.keys, room),
+            floats_at(kept, PART.slips, room),
+            ints_at(kept, PART.count, 1),
+        ),
+        Past(
+            floats_at(kept, PART.last, 5 * n).reshape(5, n),
+            floats_at(kept, PART.moved, 2 * b).reshape(b, 2),
+            floats_at(kept, PART.reactions, 3 * b).reshape(b, 3),
+        ),
+        floats_at(kept, PART.wanted, 3 * b).reshape(b, 3),
+    )

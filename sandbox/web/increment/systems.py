@@ -1,0 +1,76 @@
+"""What an increment works on, as arrays that kernels can write into: grains, bodies, settings, memories. N grains, B bodies."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats
+
+Indices = NDArray[np.int64]
+
+# Columns of ``Bodies.places``.
+X, Y, TURN, HOME_X, HOME_Y, AXIS_X, AXIS_Y, LEAST, MOST = range(9)
+PLACES = 9
+# Columns of ``System.wanted``.
+ASKED, TO_X, TO_Y = range(3)
+
+
+class Grains(NamedTuple):
+    """As ``core.packing.Packing`` has them."""
+
+    state: Floats  # (5, N) x, y, p, q1, q2 [R]
+    rest_radius: Floats  # (N,) [R]
+    poisson_ratio: Floats  # (N,)
+    contact_stiffness: Floats  # (N,) [k]
+    label: Indices  # (N,)
+
+
+class Bodies(NamedTuple):
+    """Bodies that stand fast or slide without turning, and the M primitives that they are made of."""
+
+    places: Floats  # (B, PLACES) where each is and was at first [R, rad], its axis, which is 0 where it stands fast, its travel [R]
+    local: Floats  # (M, 8) rows of ``core.rigid_contacts`` with points as seen from the body [R]
+    owner: Indices  # (M,)
+
+
+class Settings(NamedTuple):
+    """``core.settings.Settings`` and the coefficient of friction, μ."""
+
+    step: float
+    tolerance: float
+    force_floor: float
+    skin: float
+    max_iterations: int
+    hand_strength: float
+    coefficient: float
+
+
+class Memory(NamedTuple):
+    """What frictional contacts remember, as ``core.friction.Friction`` has it, in arrays with room for more of them."""
+
+    spin: Floats  # (N,) [rad]
+    keys: Indices  # (room,)
+    slips: Floats  # (room,) [R]
+    count: Indices  # (1,)
+
+
+class Past(NamedTuple):
+    """What an increment needs to know of the one before."""
+
+    last: Floats  # (5, N) displacement [R]
+    moved: Floats  # (B, 2) of the bodies [R]
+    reactions: Floats  # (B, 3) of the grains on the bodies [k R, k R²]
+
+
+class System(NamedTuple):
+    """All of it."""
+
+    grains: Grains
+    bodies: Bodies
+    settings: Settings
+    memory: Memory
+    past: Past
+    wanted: Floats  # (B, 3) is the body asked for, and where it is to go [R]

@@ -1,0 +1,152 @@
+"""A scene that is built, written into the blocks of memory that kernels and a page share; and its state read from them."""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.arrays import Floats
+from core.errors import InputError
+from core.friction import Friction
+from core.packing import Packing
+from core.rigid_contacts import EDGE
+from sandbox.web.increment.memory import COUNTS, PART, ROW, SIZES, Sizes, blank
+from sandbox.web.increment.systems import PLACES, TURN
+from scenes.scene import Scene, Setup, Values
+
+Indices = NDArray[np.int64]
+Blocks = tuple[Indices, Floats]
+ROOM = 8  # contacts a grain, and a few more: far above what any packing has
+PART_NAMES = PART._asdict()
+
+
+def part(blocks: Blocks, name: str, length: int) -> NDArray[np.float64] | Indices:
+    """So many numbers of a part, to be read and written."""
+    ints, floats = blocks
+    at = int(ints[PART_NAMES[name]])
+    block = floats if PART_NAMES[name] < PART.label else ints
+    return block[at : at + length]
+
+
+def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
+    """A run of what was built, before its first increment.
+
+    Raises InputError for what a page cannot run: a periodic box, gravity, and bodies that are dragged anywhere.
+    """
+    _check(setup)
+    packing, world = setup.packing, setup.world
+    script = _script(scene, setup, settings)
+    rows, owner = world.primitives()
+    corners = np.zeros((0, 2)) if setup.outlet is None else np.asarray(setup.outlet.below)
+    room = ROOM * len(packing) + 64
+    sizes = Sizes(
+        grains=len(packing),
+        bodies=len(world.bodies),
+        primitives=len(rows),
+        room=room,
+        contacts=room,
+        steps=len(script),
+        corners=len(corners),
+        capacity=len(packing),
+    )
+    blocks = blank(sizes)
+
+    def put(name: str, values: object) -> None:
+        flat = np.asarray(values).ravel()
+        part(blocks, name, len(flat))[:] = flat
+
+    put("state", packing.state)
+    put("rest_radius", packing.rest_radius)
+    put("poisson_ratio", packing.poisson_ratio)
+    put("contact_stiffness", packing.contact_stiffness)
+    put("label", packing.label)
+    put("places", _places(setup))
+    put("local", _local(rows, owner, world.placement()))
+    put("owner", owner)
+    put("script", script)
+    put("corners", corners)
+    solver, friction = setup.solver, setup.friction
+    put(
+        "settings",
+        [
+            *(solver.step, solver.tolerance, solver.force_floor, solver.skin),
+            *(float(solver.max_iterations), solver.hand_strength),
+            0.0 if friction is None else friction.coefficient,
+        ],
+    )
+    row, counts = part(blocks, "row", len(ROW)), part(blocks, "counts", len(COUNTS))
+    handle = setup.handles[0]
+    row[ROW.direction_x], row[ROW.direction_y] = handle.direction
+    if setup.outlet is not None:
+        row[ROW.outlet], row[ROW.beside] = setup.outlet.y, setup.outlet.beside
+    counts[COUNTS.script], counts[COUNTS.driven] = -1, world.index(handle.body)
+    return blocks
+
+
+def _check(setup: Setup) -> None:
+    dragged = [body.name for body in setup.world.bodies if body.held]
+    turned = [body.name for body in setup.world.bodies if body.axis and body.angle != 0.0]
+    if setup.packing.box is not None or setup.gravity is not None or setup.drag or dragged:
+        raise InputError("a page runs scenes in an open box, without gravity, with bodies that slide")
+    if turned or setup.follow is not None or not setup.relaxes or setup.box_target is not None:
+        raise InputError("a page runs scenes whose bodies move straight, and all of whose grains relax")
+
+
+def _places(setup: Setup) -> Floats:
+    places = np.zeros((len(setup.world.bodies), PLACES))
+    for row, body in zip(places, setup.world.bodies, strict=True):
+        row[:] = [*body.position, body.angle, *body.home, *(body.axis or (0.0, 0.0)), *body.travel]
+    return places
+
+
+def _local(rows: Floats, owner: Indices, placement: Floats) -> Floats:
+    """Primitives (M, 8) with points as seen from their bodies."""
+    local = rows.copy()
+    local[:, 1:3] -= placement[owner, :2]
+    edges = rows[:, 0] == EDGE
+    local[edges, 5:7] -= placement[owner[edges], :2]
+    return local
+
+
+def _script(scene: Scene, setup: Setup, settings: Values) -> Floats:
+    """Where the driven body goes, increment by increment (S, 2) [R]."""
+    body = setup.handles[0].body
+    script: list[tuple[float, float]] = []
+    while (targets := scene.drive(setup, settings, len(script))) is not None:
+        script.append(targets[body])
+    return np.array(script).reshape(-1, 2)
+
+
+def packing_in(blocks: Blocks) -> Packing:
+    """The grains as they are now."""
+    n = int(blocks[0][SIZES.grains])
+    x, y, *_ = part(blocks, "state", 5 * n).reshape(5, n)
+    packing = Packing(
+        x,
+        y,
+        part(blocks, "rest_radius", n).copy(),
+        part(blocks, "poisson_ratio", n).copy(),
+        part(blocks, "contact_stiffness", n).copy(),
+    )
+    packing.state[:] = part(blocks, "state", 5 * n).reshape(5, n)
+    packing.label = part(blocks, "label", n).copy()
+    return packing
+
+
+def state_hash(blocks: Blocks) -> str:
+    """As ``sandbox.session.run.Run.state_hash``."""
+    ints, floats = blocks
+    bodies, n = int(ints[SIZES.bodies]), int(ints[SIZES.grains])
+    places = part(blocks, "places", PLACES * bodies).reshape(bodies, PLACES)
+    placement = np.ascontiguousarray(places[:, : TURN + 1])
+    digest = hashlib.sha256(packing_in(blocks).hash().encode() + placement.tobytes())
+    coefficient = float(part(blocks, "settings", 7)[6])
+    if coefficient > 0.0:
+        friction = Friction(coefficient, n)
+        count = int(part(blocks, "count", 1)[0])
+        known = part(blocks, "keys", count), part(blocks, "slips", count)
+        friction.remember(part(blocks, "spin", n), *known)
+        digest.update(friction.hash().encode())
+    return digest.hexdigest()

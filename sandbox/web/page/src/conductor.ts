@@ -1,0 +1,103 @@
+// One worker a packing: all are given the same commands before the same increment, and none is an increment ahead.
+
+import type { Live } from "./live";
+import type { Command, FromWorker, Seen, ToWorker } from "./shared";
+
+export class Conductor {
+  private workers: Worker[] = [];
+  private waiting: Command[] = [];
+  private answers = 0;
+  private resetting: Command[] | null = null;
+  private dumps: ((dump: Extract<FromWorker, { kind: "dump" }>) => void)[] = [];
+  busy = true;
+  idle = false;
+  turns = 0;
+  spent = 0; // [ms] in kernels, all workers together
+
+  constructor(
+    private readonly live: Live,
+    private readonly taken: (pane: number, seen: Seen) => void,
+    private readonly finished: () => void,
+    private readonly failed: (text: string) => void,
+  ) {}
+
+  // Begin with other packings.
+  begin(module: WebAssembly.Module, blocks: [ArrayBuffer, ArrayBuffer][], settings: Command[]) {
+    for (const worker of this.workers) worker.terminate();
+    const address = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
+    this.waiting = settings;
+    this.resetting = null;
+    this.busy = true;
+    this.answers = blocks.length;
+    this.workers = blocks.map(([ints, floats], pane) => {
+      const worker = new Worker(address);
+      worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(pane, data);
+      this.post(worker, { kind: "load", module, layout: this.live.layout, ints, floats });
+      return worker;
+    });
+  }
+
+  ask(command: Command) {
+    const [name, kind] = command;
+    const move = this.live.commands.move;
+    // Of places where the hand wants a body the latest counts.
+    if (name === "command" && kind === move) this.waiting = this.waiting.filter(([other, same]) => other !== name || same !== move);
+    this.waiting.push(command);
+    this.idle = false;
+  }
+
+  reset(settings: Command[]) {
+    this.waiting = [];
+    this.resetting = settings;
+    this.idle = false;
+  }
+
+  // The next increment, once all are done with this one.
+  turn() {
+    if (this.busy || this.idle) return;
+    const message: ToWorker = this.resetting
+      ? { kind: "reset", commands: this.resetting }
+      : { kind: "turn", commands: this.waiting };
+    if (!this.resetting) this.waiting = [];
+    this.resetting = null;
+    this.busy = true;
+    this.idle = true; // unless somebody has made an increment
+    this.answers = this.workers.length;
+    for (const worker of this.workers) this.post(worker, message);
+  }
+
+  // All that a packing's kernels remember: for tests.
+  dump(pane: number): Promise<Extract<FromWorker, { kind: "dump" }>> {
+    this.post(this.workers[pane], { kind: "dump" });
+    return new Promise((resolve) => this.dumps.push(resolve));
+  }
+
+  private post(worker: Worker, message: ToWorker) {
+    worker.postMessage(message);
+  }
+
+  private hear(pane: number, message: FromWorker) {
+    if (message.kind === "dump") {
+      this.dumps.shift()?.(message);
+      return;
+    }
+    if (message.kind === "failed") {
+      this.failed(message.text);
+      return;
+    }
+    if (message.kind === "seen") {
+      this.spent += message.time;
+      if (message.seen) {
+        this.taken(pane, message.seen);
+        this.idle = false;
+      }
+    } else {
+      this.idle = false;
+    }
+    if (--this.answers) return;
+    this.busy = false;
+    if (this.waiting.length || this.resetting) this.idle = false;
+    this.turns++;
+    this.finished();
+  }
+}

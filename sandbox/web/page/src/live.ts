@@ -1,0 +1,39 @@
+// What Python says about a scene: `sandbox/web/story.py` writes it.
+
+import type { Layout } from "./shared";
+
+export interface Slider {
+  name: string;
+  title: string[];
+  unit: string;
+  least: number;
+  most: number;
+  step: number;
+  value: number;
+  top: string[] | null; // what the highest value is called
+  command: (string | number)[]; // and the value behind it
+}
+
+export interface Live {
+  scene: string;
+  languages: string[];
+  layout: Layout;
+  labels: { force: string[]; stroke: string[] };
+  title: string[];
+  question: string[];
+  about: string[];
+  views: PlayerView[];
+  packings: { name: string; title: string[]; dash: number[] }[];
+  seeds: number[];
+  bounds: [number, number, number, number];
+  axes: [number, number]; // highest stroke [R] and force [k R] that the plot begins with
+  handle: { body: number; label: string[]; radius: number; axis: [number, number] };
+  bodies: { role: string; discs: number[]; segments: number[]; polygons: number[][] }[]; // as seen from the body
+  sliders: Slider[];
+  commands: Record<string, number>; // kinds of the entry `command`
+  reasons: { text: string[]; level: number }[]; // why a relaxation ended
+  machine: number; // a hand without bound [k R]
+  lockedAfter: number;
+  lengths: [ints: number, floats: number][][]; // bytes of the blocks, by seed and packing
+  start: { theme: string; auto: boolean };
+}

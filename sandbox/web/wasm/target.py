@@ -1,0 +1,133 @@
+"""Numba's own pipeline with LLVM's WebAssembly target: the same kernels, from the same Python source, for a browser.
+
+What is used of Numba has no promise to stay, so the extra ``web`` pins its version; it is used in a process of its own, which
+compiles nothing that it runs. ``aim`` must be called before any module with kernels is imported:
+
+- the target machine and data layout are those of wasm32; sizes and indices stay 64 bit, as in the same code on the desk;
+- libraries are neither optimised nor emitted one by one: all of them are linked, and then optimised once (``linking``);
+- fast math is off, as on the desk it may round otherwise on every processor;
+- what allocates and counts references is left to ``runtime.c``, and what raises becomes a trap.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numba
+from llvmlite import binding
+from numba.core import codegen, cgutils, compiler
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+from numba.core.runtime import rtsys
+
+TRIPLE = "wasm32-unknown-unknown"
+# What every browser has had since 2023.
+FEATURES = "+bulk-memory,+mutable-globals,+nontrapping-fptoint,+sign-ext,+simd128"
+# One instruction each, if asked for as LLVM's intrinsic; by name they would be calls, and nothing around them would vectorise.
+INSTRUCTIONS = ("ceil", "fabs", "floor", "rint", "sqrt", "trunc")
+
+_RUNTIME = """
+%held = type {{ i64, ptr, ptr, ptr, i64 }}
+define ptr @NRT_MemInfo_data_fast(ptr %held) alwaysinline {{
+  %place = getelementptr %held, ptr %held, i32 0, i32 3
+  %data = load ptr, ptr %place
+  ret ptr %data
+}}
+"""
+
+
+def header() -> str:
+    """The first lines of every module."""
+    return f'target triple = "{TRIPLE}"\ntarget datalayout = "{machine().target_data}"\n'
+
+
+def machine() -> Any:
+    """LLVM's target machine."""
+    target = binding.Target.from_triple(TRIPLE)
+    return target.create_target_machine(cpu="generic", features=FEATURES, opt=3, reloc="static")
+
+
+def as_instructions(text: str) -> str:
+    """LLVM's code with the functions of ``INSTRUCTIONS`` as intrinsics."""
+    for name in INSTRUCTIONS:
+        called = rf'@"?{name}"?\('
+        if not re.search(called, text):
+            continue
+        intrinsic = f"@llvm.{name}.f64("
+        text = re.sub(rf"^declare double {called}.*$", "", text, flags=re.MULTILINE)
+        text = re.sub(rf"double {called}", f"double {intrinsic}", text)
+        if not re.search(rf'^declare double @"?llvm\.{name}\.f64', text, flags=re.MULTILINE):
+            text += f"\ndeclare double {intrinsic}double)\n"
+    return text
+
+
+class Library(codegen.CPUCodeLibrary):  # type: ignore[misc]
+    """Code that is never run here, and not optimised before all of it is together."""
+
+    def add_ir_module(self, ir_module: Any) -> None:
+        text = as_instructions(cgutils.normalize_ir_text(str(ir_module)))
+        module = binding.parse_assembly(text)
+        module.name = ir_module.name
+        module.verify()
+        self._final_module.link_in(module)
+
+    def _optimize_final_module(self) -> None:
+        """Later."""
+
+    def _finalize_specific(self) -> None:
+        """Nothing is loaded."""
+
+    def get_pointer_to_function(self, name: str) -> int:
+        del name
+        self._ensure_finalized()
+        return 8  # any number but 0: it is never called
+
+
+def aim() -> None:
+    """Let Numba compile for WebAssembly from now on, without fast math. It can compile for nothing else in this process then."""
+    from core import jit
+
+    if binding.llvm_version_info[0] and not hasattr(codegen.CPUCodeLibrary, "_optimize_final_module"):
+        raise RuntimeError(f"Numba {numba.__version__} is not the one that the extra 'web' pins")
+    binding.initialize_all_targets()
+    binding.initialize_all_asmprinters()
+    context = cpu_target.target_context  # which makes its runtime for this machine first
+    own: Any = context._internal_codegen
+    own._library_class = Library
+    own._add_module = lambda module: None
+    own.set_env = lambda name, env: None
+    own._tm = machine()
+    own._target_data = own._tm.target_data
+    own._data_layout = str(own._target_data)
+    own._create_empty_module = _empty
+    with global_compiler_lock:
+        runtime = Library(own, "runtime")
+        runtime._final_module.link_in(binding.parse_assembly(header() + _RUNTIME.format()))
+        runtime.finalize()
+    rtsys._library, rtsys._init = runtime, True
+    jit.FAST_MATH = set()
+    jit.keep = lambda dispatcher: None
+    jit.PIPELINES = {False: jit.inlining.Pipelines(_pipeline(False), _pipeline(False)), True: jit.inlining.Pipelines(_pipeline(True), _pipeline(True))}
+
+
+def _empty(name: str) -> Any:
+    from llvmlite import ir
+
+    module = ir.Module(cgutils.normalize_ir_text(name))
+    module.triple, module.data_layout = TRIPLE, str(machine().target_data)
+    return module
+
+
+def _pipeline(noalias: bool) -> type:
+    """Numba's, with the promise of ``core.jit`` and without what calls a kernel from Python or C."""
+    passes: Any = compiler.DefaultPassBuilder
+
+    class Pipeline(compiler.CompilerBase):  # type: ignore[misc]
+        def define_pipelines(self) -> list[Any]:
+            flags = self.state.flags
+            flags.noalias = noalias
+            flags.no_cfunc_wrapper = flags.no_cpython_wrapper = True
+            return [passes.define_nopython_pipeline(self.state)]
+
+    return Pipeline
