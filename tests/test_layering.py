@@ -92,13 +92,16 @@ def circle_through(start: str) -> list[str]:
 STUDY = "studies.common ensemble files session draw scenes core"
 ROOMS = {
     "cli": "window sweep studies.accuracy studies.stability studies.paper studies.bench studies.hand studies.classics "
-    "preparation studies.clogging studies.common ensemble site record player files lessons session words scenes core",
+    "preparation studies.clogging studies.common ensemble site web record player files lessons session words scenes core",
     "window": "preparation window.solvers sweep ensemble record player files draw lessons session words scenes core",
     "sweep": "ensemble files record draw session scenes core",
     "window.solvers": "files session words scenes core",
     "preparation": "draw scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
+    "web": "web.increment web.wasm player files draw lessons words scenes core",
+    "web.wasm": "web.increment core",
+    "web.increment": "core",
     "site": "record files player session words scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,

@@ -115,6 +115,7 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
         _add_bench,
         _add_study,
         _add_site,
+        _add_web,
         _add_lesson,
         _add_prepare,
     ):
@@ -309,6 +310,19 @@ def _add_site(command: Command) -> None:
         metavar="N",
         help="increments of each scene at most (default: its whole protocol)",
     )
+
+
+def _add_web(command: Command) -> None:
+    web = command(
+        "web",
+        verbs.web,
+        "Write pages on which scenes run in any browser, with nothing to install: the same kernels, compiled for it. "
+        "Needs the extra web and Node.js; the first time it compiles, for two minutes.",
+    )
+    web.add_argument("--out", metavar="DIR", required=True, help="folder for the pages")
+    what = web.add_mutually_exclusive_group()
+    what.add_argument("--scene", nargs="+", metavar="NAME", help="these scenes instead of all")
+    what.add_argument("--single", metavar="NAME", help="one scene alone, as one file")
 
 
 def _add_lesson(command: Command) -> None:

@@ -206,6 +206,25 @@ def study(options: argparse.Namespace) -> int:
         return INTERRUPTED
 
 
+def web(options: argparse.Namespace) -> int:
+    """Write pages on which scenes run."""
+    from sandbox.files.folder import prepare_folder
+    from sandbox.web import building
+
+    asked = [options.single] if options.single else options.scene or building.SCENES
+    names = [building.scene_named(name) for name in dict.fromkeys(asked)]
+    folder = prepare_folder(options.out, "")
+    single = options.single is not None
+
+    def tell(text: str, share: float) -> None:
+        print(f"{text}: {share:.0%}", flush=True)
+
+    written = building.write(folder, names, tell, single=single)
+    for path in written:
+        print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
+    return OK
+
+
 def site(options: argparse.Namespace) -> int:
     """Write the gallery."""
     from sandbox.files.folder import prepare_folder

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,7 +73,7 @@ def page(tape: Tape, look: Look | None = None) -> str:
     }
     begins = {"view": look.view, "play": look.play, "auto": look.auto}
     script = (
-        f'"use strict";\nconst PAGE = {as_json(_about() | titles | {"start": begins})};\n'
+        f'"use strict";\nconst PAGE = {as_json(about(words_of) | titles | {"start": begins})};\n'
         f"const PLURALS = [{', '.join(map(_plural, available()))}];\n"
         + "\n".join(asset(name) for name in SCRIPTS)
     )
@@ -101,10 +102,10 @@ def _paragraphs(tape: Tape) -> str:
     return "".join(f"<p>{html.escape(text)}</p>" for text in story(tape))
 
 
-def _about() -> dict[str, Any]:
-    """What is the same for every run: words, colours, signs."""
+def about(said: Callable[[str], dict[str, str]]) -> dict[str, Any]:
+    """What is the same for every run: words, colours, signs. ``said`` has all words of a language."""
     return {
-        "words": [_words(code) for code in available()],
+        "words": [said(code) for code in available()],
         "keys": [language.table(code)["player_keys"]["keys"] for code in available()],
         "themes": {name: _theme(theme) for name, theme in THEMES.items()},
         "packings": {
@@ -134,7 +135,7 @@ def _plural(code: str) -> str:
     return f"(n) => +({language.table(code)['plural']})"
 
 
-def _words(code: str) -> dict[str, str]:
+def words_of(code: str) -> dict[str, str]:
     """All that the script says in a language."""
     table = language.table(code)
     said: dict[str, str] = {"name": table["name"], "decimal": table["decimal"], **table["player"]}

@@ -10,7 +10,6 @@ import numpy as np
 from sandbox.web.laid_out import Blocks
 
 
-
 class Host:
     """One run in the memory of an instance of its own."""
 
@@ -33,13 +32,11 @@ class Host:
 
     def blocks(self) -> Blocks:
         """Both, as they are now."""
-        read = [
-            np.frombuffer(
-                bytes(self._memory.read(self._store, place, place + block.nbytes)), block.dtype
-            ).copy()
+        whole, others = (
+            bytes(self._memory.read(self._store, place, place + block.nbytes))
             for place, block in zip(self._places, self._blocks, strict=True)
-        ]
-        return read[0], read[1]
+        )
+        return np.frombuffer(whole, np.int64).copy(), np.frombuffer(others, np.float64).copy()
 
     def call(self, name: str, *values: float) -> Any:
         """An entry, on this run; what it has allocated before is forgotten."""

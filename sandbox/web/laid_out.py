@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +13,9 @@ from core.arrays import Floats
 from core.errors import InputError
 from core.friction import Friction
 from core.packing import Packing
-from core.rigid_contacts import EDGE
+from core.rigid import SAME_POINT
+from core.rigid_contacts import EDGE, VERTEX
+from sandbox.web.increment import curve
 from sandbox.web.increment.memory import COUNTS, PART, ROW, SIZES, Sizes, blank
 from sandbox.web.increment.systems import PLACES, TURN
 from scenes.scene import Scene, Setup, Values
@@ -19,10 +23,11 @@ from scenes.scene import Scene, Setup, Values
 Indices = NDArray[np.int64]
 Blocks = tuple[Indices, Floats]
 ROOM = 8  # contacts a grain, and a few more: far above what any packing has
+CURVES = {"grain_row": curve.ROW_OF_GRAINS, "biaxial_press": curve.PRESS}
 PART_NAMES = PART._asdict()
 
 
-def part(blocks: Blocks, name: str, length: int) -> NDArray[np.float64] | Indices:
+def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
     """So many numbers of a part, to be read and written."""
     ints, floats = blocks
     at = int(ints[PART_NAMES[name]])
@@ -35,7 +40,7 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
 
     Raises InputError for what a page cannot run: a periodic box, gravity, and bodies that are dragged anywhere.
     """
-    _check(setup)
+    _check(scene, setup)
     packing, world = setup.packing, setup.world
     script = _script(scene, setup, settings)
     rows, owner = world.primitives()
@@ -65,6 +70,7 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     put("places", _places(setup))
     put("local", _local(rows, owner, world.placement()))
     put("owner", owner)
+    put("joints", _joints(rows))
     put("script", script)
     put("corners", corners)
     solver, friction = setup.solver, setup.friction
@@ -82,16 +88,24 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     if setup.outlet is not None:
         row[ROW.outlet], row[ROW.beside] = setup.outlet.y, setup.outlet.beside
     counts[COUNTS.script], counts[COUNTS.driven] = -1, world.index(handle.body)
+    counts[COUNTS.curve] = CURVES.get(scene.name, curve.FORCE)
+    row[ROW.side] = math.hypot(*np.subtract(setup.outline[1], setup.outline[0]))
     return blocks
 
 
-def _check(setup: Setup) -> None:
+def _check(scene: Scene, setup: Setup) -> None:
+    if setup.curve is not None and scene.name not in CURVES:
+        raise InputError(f"a page cannot plot the curve of {scene.name}")
     dragged = [body.name for body in setup.world.bodies if body.held]
     turned = [body.name for body in setup.world.bodies if body.axis and body.angle != 0.0]
     if setup.packing.box is not None or setup.gravity is not None or setup.drag or dragged:
-        raise InputError("a page runs scenes in an open box, without gravity, with bodies that slide")
+        raise InputError(
+            "a page runs scenes in an open box, without gravity, with bodies that slide"
+        )
     if turned or setup.follow is not None or not setup.relaxes or setup.box_target is not None:
-        raise InputError("a page runs scenes whose bodies move straight, and all of whose grains relax")
+        raise InputError(
+            "a page runs scenes whose bodies move straight, and all of whose grains relax"
+        )
 
 
 def _places(setup: Setup) -> Floats:
@@ -108,6 +122,21 @@ def _local(rows: Floats, owner: Indices, placement: Floats) -> Floats:
     edges = rows[:, 0] == EDGE
     local[edges, 5:7] -= placement[owner[edges], :2]
     return local
+
+
+def _joints(rows: Floats) -> Indices:
+    """See ``systems.Bodies.joints``: the edges whose ends the vertices are."""
+    joints = np.zeros((len(rows), 2), dtype=np.int64)
+    edges = np.flatnonzero(rows[:, 0] == EDGE)
+    for m in np.flatnonzero(rows[:, 0] == VERTEX):
+        for side, way in enumerate((rows[m, 3:5], rows[m, 5:7])):
+            for e in edges:
+                ends = ((rows[e, 1:3], -rows[e, 3:5], -1), (rows[e, 5:7], rows[e, 3:5], 1))
+                for place, along, sign in ends:
+                    near = np.abs(place - rows[m, 1:3]).max() < SAME_POINT
+                    if near and rows[e, 7] == rows[m, 7] and np.array_equal(along, way):
+                        joints[m, side] = sign * (e + 1)
+    return joints
 
 
 def _script(scene: Scene, setup: Setup, settings: Values) -> Floats:
@@ -137,7 +166,7 @@ def packing_in(blocks: Blocks) -> Packing:
 
 def state_hash(blocks: Blocks) -> str:
     """As ``sandbox.session.run.Run.state_hash``."""
-    ints, floats = blocks
+    ints, _ = blocks
     bodies, n = int(ints[SIZES.bodies]), int(ints[SIZES.grains])
     places = part(blocks, "places", PLACES * bodies).reshape(bodies, PLACES)
     placement = np.ascontiguousarray(places[:, : TURN + 1])
@@ -145,7 +174,7 @@ def state_hash(blocks: Blocks) -> str:
     coefficient = float(part(blocks, "settings", 7)[6])
     if coefficient > 0.0:
         friction = Friction(coefficient, n)
-        count = int(part(blocks, "count", 1)[0])
+        count = int(part(blocks, "known", 1)[0])
         known = part(blocks, "keys", count), part(blocks, "slips", count)
         friction.remember(part(blocks, "spin", n), *known)
         digest.update(friction.hash().encode())

@@ -1,7 +1,7 @@
 """A scene on the desk without fast math, by the session and by the page's kernels, in a process of its own.
 
-``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE …``: writes the blocks of memory as they are laid out, and after
-each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
+``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE …``: writes the blocks of memory as they are laid out, and
+after each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Step = tuple[str, float]
 def without_fast_math() -> None:
     """Before anything with kernels is imported. What is compiled so is kept apart from all else."""
     target = kernel_cache.target
-    kernel_cache.target = lambda: f"{target()} without fast math"  # type: ignore[assignment]
+    kernel_cache.target = lambda: f"{target()} without fast math"
     jit.FAST_MATH = set()
 
 
@@ -37,7 +37,7 @@ def main() -> None:
     without_fast_math()
     from sandbox.session.run import Run
     from sandbox.web.increment import course
-    from sandbox.web.increment.memory import COUNTS, Kept
+    from sandbox.web.increment.memory import COUNTS, ROW, Kept
     from sandbox.web.laid_out import laid_out, part, state_hash
     from scenes import registry
 
@@ -51,7 +51,7 @@ def main() -> None:
     run = Run(scene, settings, kind, int(seed), setup)
     assert course.advance(kept) == 1
     session_said, kernels_said = [run.state_hash()], [state_hash(blocks)]
-    left, shares = [0], [1.0]
+    left, shares, curve = [0], [1.0], []
     body = setup.handles[0].body
     driven = setup.world.index(body)
     for step in range(int(steps)):
@@ -72,6 +72,9 @@ def main() -> None:
         kernels_said.append(state_hash(blocks))
         left.append(int(part(blocks, "counts", len(COUNTS))[COUNTS.out]))
         shares.append(run.last.share)
+        row = part(blocks, "row", len(ROW))
+        newest = run.history[-1]
+        curve.append([newest.stroke, row[ROW.stroke], newest.resisting, row[ROW.resisting]])
     np.savez(
         Path(out),
         ints=first[0],
@@ -80,6 +83,7 @@ def main() -> None:
         kernels=kernels_said,
         left=left,
         shares=shares,
+        curve=curve,
     )
 
 

@@ -1,6 +1,5 @@
 // The page: what is shown, and what a person asks for by mouse, finger and keyboard.
 
-const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 const RATE = 15; // moments a second at speed 1
 const SPEEDS = [0.125, 0.25, 0.5, 1, 2, 4];
 const LEAP = 10; // moments that a page key goes

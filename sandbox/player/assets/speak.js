@@ -1,5 +1,6 @@
 // Words and numbers in the present language.
 
+const FONT = 'system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
 const FINER = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
 let language = 0; // place in run.languages
 let run; // the recording

@@ -5,6 +5,8 @@ Bodies that a person has drawn are not there; a body that is dragged anywhere is
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from core.hand import SLACK
@@ -28,10 +30,33 @@ from sandbox.web.increment.systems import (
 NOTHING, FORCE_LIMIT, END_OF_TRAVEL = 0, 1, 2
 
 
+@kernel(fastmath=False)
+def square(x):
+    """x² as two numbers whose sum is exact (Veltkamp, Dekker)."""
+    high = x * 134217729.0
+    high -= high - x
+    low = x - high
+    whole = x * x
+    return whole, ((high * high - whole) + 2.0 * high * low) + low * low
+
+
+@kernel(fastmath=False)
+def hypotenuse(x, y):
+    """√(x² + y²), rounded once: what ``math.hypot`` gives."""
+    a, b = square(x)
+    c, d = square(y)
+    whole = a + c
+    part = whole - a
+    rest = (a - (whole - part)) + (c - part) + b + d
+    root = math.sqrt(whole)
+    e, f = square(root)
+    return root + 0.5 * ((whole - e) - f + rest) / root
+
+
 @kernel(allocates=True)
 def rows_of(bodies):
-    """The primitives (M, 8) where the bodies are."""
-    rows = bodies.local.copy()
+    """The primitives (M, 8) where the bodies are, edges first made anew from their ends, as ``core.rigid`` does."""
+    rows, joints = bodies.local.copy(), bodies.joints
     for m in range(rows.shape[0]):
         body = bodies.owner[m]
         x, y = bodies.places[body, X], bodies.places[body, Y]
@@ -40,12 +65,26 @@ def rows_of(bodies):
         if rows[m, 0] == EDGE:
             rows[m, 5] += x
             rows[m, 6] += y
+            dx, dy = rows[m, 5] - rows[m, 1], rows[m, 6] - rows[m, 2]
+            length = hypotenuse(dx, dy)
+            rows[m, 3] = dx / length
+            rows[m, 4] = dy / length
+    for m in range(rows.shape[0]):
+        for side in range(2):
+            edge = abs(joints[m, side]) - 1
+            if edge >= 0:
+                sign = 1.0 if joints[m, side] > 0 else -1.0
+                rows[m, 3 + 2 * side] = sign * rows[edge, 3]
+                rows[m, 4 + 2 * side] = sign * rows[edge, 4]
     return rows
 
 
 @kernel
 def slide(place, wanted, step):
-    """Move a body (PLACES,) along its axis by ``wanted`` and at most ``step`` [R], within its travel. Returns dx, dy, and what stops it."""
+    """Move a body (PLACES,) along its axis by ``wanted`` and at most ``step`` [R], within its travel.
+
+    Returns dx, dy, and what stops it.
+    """
     ax, ay = place[AXIS_X], place[AXIS_Y]
     stood = (place[X] - place[HOME_X]) * ax + (place[Y] - place[HOME_Y]) * ay
     asked = stood + min(max(wanted, -step), step)

@@ -59,17 +59,13 @@ def touching(grains, primitives, box):
         pairs = neighbors.find_pairs(state, 0.0, lists, box)
     values = np.empty((6, pairs))
     first, second = lists.first, lists.second
-    pairs = observables._measure_pairs(
-        state, support, stiffness, pairs, first, second, box, values
-    )
+    pairs = observables._measure_pairs(state, support, stiffness, pairs, first, second, box, values)
     rigid = room_for(primitives, 64 + 2 * max(count, 1))
     while not rigid_contacts.find_rigid_pairs(state, rigid, 0.0, box):
         rigid = room_for(primitives, 2 * rigid.grain.shape[0])
     by_bodies = np.empty((8, rigid.used[0]))
     bodies = observables._measure_rigid(state, support, stiffness, rigid, box, by_bodies)
-    return Touching(
-        pairs, first, second, values, bodies, rigid.grain, rigid.primitive, by_bodies
-    )
+    return Touching(pairs, first, second, values, bodies, rigid.grain, rigid.primitive, by_bodies)
 
 
 @kernel(allocates=True)

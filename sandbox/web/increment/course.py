@@ -1,4 +1,4 @@
-"""A run under way: the hand or the script pulls, increments follow one another. ``sandbox.session`` (run, hands, course) as kernels.
+"""A run under way: the hand or the script pulls, increments follow one another. What ``sandbox.session`` does, as kernels.
 
 One driven body that slides; what the session only says or counts for a person is left to the page.
 """
@@ -10,6 +10,7 @@ import numpy as np
 from core.jit import kernel
 from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, rows_of
 from sandbox.web.increment.contacts import AT_X, AT_Y, FORCE, IMAGE_X, IMAGE_Y, touching
+from sandbox.web.increment.curve import plotted
 from sandbox.web.increment.increment import failed, increment
 from sandbox.web.increment.memory import (
     COUNTS,
@@ -77,7 +78,7 @@ def touched(kept):
     counts = counts_of(kept)
     clear(ints_at(kept, PART.blocked, kept.ints[SIZES.bodies]))
     counts[COUNTS.stuck] = 0
-    counts[COUNTS.touched] = MOST_RELAXATIONS
+    counts[COUNTS.touched] = MOST_RELAXATIONS if counts[COUNTS.rows] else 0
 
 
 @kernel(allocates=True)
@@ -92,7 +93,7 @@ def set_friction(kept, coefficient):
     """Coulomb's coefficient; contacts forget where there was no friction, or is none now."""
     settings = floats_at(kept, PART.settings, 7)
     if settings[6] == 0.0 or coefficient == 0.0:
-        ints_at(kept, PART.count, 1)[0] = 0
+        ints_at(kept, PART.known, 1)[0] = 0
         clear(floats_at(kept, PART.spin, kept.ints[SIZES.grains]))
     settings[6] = coefficient
     touched(kept)
@@ -218,9 +219,15 @@ def advance(kept):
         fewer_grains = system_in(kept).grains
         contacts = touching(fewer_grains, rows_of(system.bodies), None)
     show(kept, contacts)
-    row[ROW.stroke] = (place[X] - place[HOME_X]) * place[AXIS_X]
-    row[ROW.stroke] += (place[Y] - place[HOME_Y]) * place[AXIS_Y]
-    row[ROW.resisting] = -(push[0] * row[ROW.direction_x] + push[1] * row[ROW.direction_y]) + 0.0
+    stroke = (place[X] - place[HOME_X]) * place[AXIS_X] + (place[Y] - place[HOME_Y]) * place[AXIS_Y]
+    resisting = -(push[0] * row[ROW.direction_x] + push[1] * row[ROW.direction_y]) + 0.0
+    kind = counts[COUNTS.curve]
+    row[ROW.stroke], row[ROW.resisting] = plotted(
+        kind, stroke, resisting, system.past.reactions, row[ROW.side]
+    )
+    along = push[0] * place[AXIS_X] + push[1] * place[AXIS_Y]
+    row[ROW.hand_x] = -along * place[AXIS_X]
+    row[ROW.hand_y] = -along * place[AXIS_Y]
     row[ROW.residual] = made.residual
     row[ROW.scale] = made.scale
     row[ROW.energy] = made.energy
@@ -237,4 +244,3 @@ def advance(kept):
     for body in range(stopped.shape[0]):
         stopped[body] = made.stopped[body]
     return 1
-

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import carray, types
+import numba
+from numba import types
 
 from core.jit import kernel
 from sandbox.web.increment import course
 from sandbox.web.increment.memory import Kept
 
+carray: Any = numba.carray  # type: ignore[attr-defined]
 _I, _F = types.CPointer(types.int64), types.CPointer(types.float64)
 _NUMBER, _WHOLE = types.float64, types.int64
 

@@ -22,8 +22,14 @@ from sandbox.web.increment.contacts import (
     touching,
 )
 from sandbox.web.increment.frictional import Origin, Pulls, no_pulls
-from sandbox.web.increment.relaxation import BUDGET, ITERATION_LIMIT, SUNK, relax
-from sandbox.web.increment.relaxation import COLLAPSED, NOT_FINITE
+from sandbox.web.increment.relaxation import (
+    BUDGET,
+    COLLAPSED,
+    ITERATION_LIMIT,
+    NOT_FINITE,
+    SUNK,
+    relax,
+)
 from sandbox.web.increment.systems import ASKED, TURN, X, Y
 
 
@@ -48,14 +54,14 @@ class Increment(NamedTuple):
 @kernel
 def failed(reason):
     """True for what is taken back."""
-    return reason == NOT_FINITE or reason == COLLAPSED or reason == SUNK
+    return reason in (NOT_FINITE, COLLAPSED, SUNK)
 
 
 @kernel(allocates=True)
 def origin_of(system, rows, before):
     """Where slips are counted from; bodies turn from ``before`` (B,) [rad]."""
     memory, bodies = system.memory, system.bodies
-    count = memory.count[0]
+    count = memory.known[0]
     turn = np.empty(rows.shape[0])
     for m in range(turn.shape[0]):
         body = bodies.owner[m]
@@ -77,7 +83,7 @@ def remember(memory, relaxed):
     count = relaxed.known.shape[0]
     if count > memory.keys.shape[0]:
         raise MemoryError
-    memory.count[0] = count
+    memory.known[0] = count
     memory.keys[:count] = relaxed.known
     memory.slips[:count] = relaxed.slips
     memory.spin[:] += relaxed.turned

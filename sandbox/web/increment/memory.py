@@ -47,12 +47,15 @@ class Course(NamedTuple):
     stuck: int = 2  # increments in a row in which all the hand's strength moved nothing
     out: int = 3  # grains that have left
     left: int = 4  # and in the latest increment
-    touched: int = 5  # something was changed: relax where things stand, in so many increments at most
+    touched: int = (
+        5  # something was changed: relax where things stand, in so many increments at most
+    )
     reason: int = 6  # why the latest relaxation ended
     iterations: int = 7  # of the latest increment
     pairs: int = 8  # contacts between grains that are shown
     shown: int = 9  # all contacts that are shown, those with bodies last
     driven: int = 10  # the body that the script drives and the curve is about
+    curve: int = 11  # what is plotted: see ``curve``
 
 
 class Row(NamedTuple):
@@ -70,6 +73,9 @@ class Row(NamedTuple):
     direction_y: int = 9
     outlet: int = 10  # who is below has left [R]
     beside: int = 11  # or lies under the funnel further from the middle than this [R]
+    hand_x: int = 12  # force of the hand along the guide of its body [k R]
+    hand_y: int = 13
+    side: int = 14  # what the curve is about, see there [R]
 
 
 COUNTS, ROW, SIZES = Course(), Row(), Sizes(*range(8))
@@ -100,8 +106,9 @@ class Parts(NamedTuple):
     ends: int  # (2, contacts) where those with bodies touch [R]
     label: int  # of ints, from here
     keys: int
-    count: int
+    known: int
     owner: int
+    joints: int
     counts: int
     stopped: int  # (B,) why, in the latest increment
     blocked: int  # (B,) is it stopped until the hand moves?
@@ -139,8 +146,9 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "ends": 2 * sizes.contacts,
         "label": n,
         "keys": sizes.room,
-        "count": 1,
+        "known": 1,
         "owner": m,
+        "joints": 2 * m,
         "counts": len(COUNTS),
         "stopped": b,
         "blocked": b,
@@ -218,6 +226,7 @@ def system_in(kept):
             floats_at(kept, PART.places, PLACES * b).reshape(b, PLACES),
             floats_at(kept, PART.local, 8 * m).reshape(m, 8),
             ints_at(kept, PART.owner, m),
+            ints_at(kept, PART.joints, 2 * m).reshape(m, 2),
         ),
         Settings(
             settings[0],
@@ -232,7 +241,7 @@ def system_in(kept):
             floats_at(kept, PART.spin, n),
             ints_at(kept, PART.keys, room),
             floats_at(kept, PART.slips, room),
-            ints_at(kept, PART.count, 1),
+            ints_at(kept, PART.known, 1),
         ),
         Past(
             floats_at(kept, PART.last, 5 * n).reshape(5, n),

@@ -31,9 +31,10 @@ class Grains(NamedTuple):
 class Bodies(NamedTuple):
     """Bodies that stand fast or slide without turning, and the M primitives that they are made of."""
 
-    places: Floats  # (B, PLACES) where each is and was at first [R, rad], its axis, which is 0 where it stands fast, its travel [R]
+    places: Floats  # (B, PLACES) where each is and was at first [R, rad], its axis or 0 if it stands fast, its travel [R]
     local: Floats  # (M, 8) rows of ``core.rigid_contacts`` with points as seen from the body [R]
     owner: Indices  # (M,)
+    joints: Indices  # (M, 2) the edges that a vertex ends, counted from 1, and below 0 where it is their start; 0: none
 
 
 class Settings(NamedTuple):
@@ -54,7 +55,7 @@ class Memory(NamedTuple):
     spin: Floats  # (N,) [rad]
     keys: Indices  # (room,)
     slips: Floats  # (room,) [R]
-    count: Indices  # (1,)
+    known: Indices  # (1,) how many remember something
 
 
 class Past(NamedTuple):

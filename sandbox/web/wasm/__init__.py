@@ -1,1 +1,1 @@
-"""From kernels to one WebAssembly file, when pages are built; see ``target`` and ``linking``. The program itself never imports this."""
+"""From kernels to one WebAssembly file, when pages are built; see ``target`` and ``linking``. Nothing else imports this."""

@@ -14,11 +14,14 @@ import numba
 from llvmlite import binding
 from numba import types
 
-from sandbox.web.wasm.target import _pipeline, header, machine
+from sandbox.web.wasm.target import header, machine, pipeline
 
 HERE = Path(__file__).parent
 _LLVM = {"float64": "double", "int64": "i64", "none": "void"}
-_DYNAMIC = r'(@"?numba\.dynamic\.globals\.\S+ = )(?:linkonce )?(?:local_unnamed_addr )?(?:global|constant) ptr inttoptr \(i64 \d+ to ptr\)'
+_DYNAMIC = (
+    r'(@"?numba\.dynamic\.globals\.\S+ = )(?:linkonce )?(?:local_unnamed_addr )?'
+    r"(?:global|constant) ptr inttoptr \(i64 \d+ to ptr\)"
+)
 # Only where an error is raised: such code becomes a trap.
 _ERRORS = (
     *("PyErr_SetString", "PyErr_Format", "NRT_MemInfo_call_dtor", "numba_gil_ensure"),
@@ -32,9 +35,7 @@ def build(entries: Mapping[str, tuple[Any, Any]], out: Path) -> None:
     Raises RuntimeError where something is called that a browser has not.
     """
     whole = None
-    import time
     for name, (function, signature) in entries.items():
-        print(name, time.process_time(), flush=True)
         module = _compiled(name, function, signature)
         if whole is None:
             whole = module
@@ -42,10 +43,7 @@ def build(entries: Mapping[str, tuple[Any, Any]], out: Path) -> None:
             whole.link_in(module)
     assert whole is not None
     module = _trapping(whole)
-    Path("/tmp/inc.ll").write_text(str(module))
-    print("optimise", time.process_time(), flush=True)
-    _optimise(module, set(entries))
-    print("emit", time.process_time(), [f.name for f in module.functions if f.is_declaration and not f.name.startswith("llvm.")],flush=True)
+    _optimise(module)
     with tempfile.TemporaryDirectory() as folder:
         kernels = Path(folder) / "kernels.o"
         kernels.write_bytes(machine().emit_object(module))
@@ -55,7 +53,7 @@ def build(entries: Mapping[str, tuple[Any, Any]], out: Path) -> None:
 def _compiled(name: str, function: Any, signature: Any) -> Any:
     """LLVM's module with the function as ``name``, which returns its value, and traps where it would raise."""
     dispatcher = numba.njit(
-        signature, nogil=True, error_model="numpy", pipeline_class=_pipeline(noalias=False)
+        signature, nogil=True, error_model="numpy", pipeline_class=pipeline(noalias=False)
     )(function)
     result = dispatcher.overloads[signature.args]
     text = str(result.library._final_module)
@@ -71,7 +69,11 @@ def _compiled(name: str, function: Any, signature: Any) -> Any:
     stored = "ptr" if returned == "void" else returned
     kinds = ["ptr" if isinstance(a, types.CPointer) else _LLVM[str(a)] for a in signature.args]
     given = ", ".join(f"{kind} %a{k}" for k, kind in enumerate(kinds))
-    end = "ret void" if returned == "void" else f"%value = load {returned}, ptr %result\n  ret {returned} %value"
+    end = (
+        "ret void"
+        if returned == "void"
+        else f"%value = load {returned}, ptr %result\n  ret {returned} %value"
+    )
     module.link_in(
         binding.parse_assembly(f"""{header()}
 declare i32 @"{entry}"({", ".join(["ptr", "ptr", *kinds])})
@@ -108,14 +110,15 @@ def _trapping(whole: Any) -> Any:
     return module
 
 
-def _optimise(module: Any, entries: set[str]) -> None:
+def _optimise(module: Any) -> None:
     """All of it at once, as nothing but the entries is called from outside."""
     target = machine()
     options = binding.create_pipeline_tuning_options(speed_level=3)
     options.loop_vectorization, options.slp_vectorization = True, False
+    # A tenth smaller than with the defaults, and a little faster.
+    options.loop_unrolling, options.inlining_threshold = False, 100
     passes = binding.create_pass_builder(target, options)
     passes.getModulePassManager().run(module, passes)
-    del entries
 
 
 def _link(kernels: Path, names: list[str], out: Path) -> None:

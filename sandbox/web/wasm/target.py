@@ -1,7 +1,7 @@
 """Numba's own pipeline with LLVM's WebAssembly target: the same kernels, from the same Python source, for a browser.
 
-What is used of Numba has no promise to stay, so the extra ``web`` pins its version; it is used in a process of its own, which
-compiles nothing that it runs. ``aim`` must be called before any module with kernels is imported:
+The extra ``web`` pins Numba; it is used in a process of its own, which compiles nothing that it runs. ``aim`` must be called
+before any module with kernels is imported:
 
 - the target machine and data layout are those of wasm32; sizes and indices stay 64 bit, as in the same code on the desk;
 - libraries are neither optimised nor emitted one by one: all of them are linked, and then optimised once (``linking``);
@@ -16,24 +16,34 @@ from typing import Any
 
 import numba
 from llvmlite import binding
-from numba.core import codegen, cgutils, compiler
+from numba.core import cgutils as numba_cgutils
+from numba.core import codegen as numba_codegen
+from numba.core import compiler as numba_compiler
+from numba.core import runtime as numba_runtime
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
-from numba.core.runtime import rtsys
 
+# Numba has no types.
+cgutils: Any = numba_cgutils
+codegen: Any = numba_codegen
+compiler: Any = numba_compiler
+rtsys: Any = numba_runtime.rtsys  # type: ignore[attr-defined]
+
+PINNED = "0.68."  # what is used here of Numba has no promise to stay
 TRIPLE = "wasm32-unknown-unknown"
 # What every browser has had since 2023.
 FEATURES = "+bulk-memory,+mutable-globals,+nontrapping-fptoint,+sign-ext,+simd128"
 # One instruction each, if asked for as LLVM's intrinsic; by name they would be calls, and nothing around them would vectorise.
 INSTRUCTIONS = ("ceil", "fabs", "floor", "rint", "sqrt", "trunc")
 
+# Where the head of an allocation says its numbers are: see runtime.c.
 _RUNTIME = """
-%held = type {{ i64, ptr, ptr, ptr, i64 }}
-define ptr @NRT_MemInfo_data_fast(ptr %held) alwaysinline {{
-  %place = getelementptr %held, ptr %held, i32 0, i32 3
+%Held = type { i64, ptr, ptr, ptr, i64 }
+define ptr @NRT_MemInfo_data_fast(ptr %held) alwaysinline {
+  %place = getelementptr %Held, ptr %held, i32 0, i32 3
   %data = load ptr, ptr %place
   ret ptr %data
-}}
+}
 """
 
 
@@ -87,28 +97,46 @@ class Library(codegen.CPUCodeLibrary):  # type: ignore[misc]
 def aim() -> None:
     """Let Numba compile for WebAssembly from now on, without fast math. It can compile for nothing else in this process then."""
     from core import jit
+    from core.inlining import Pipelines
 
-    if binding.llvm_version_info[0] and not hasattr(codegen.CPUCodeLibrary, "_optimize_final_module"):
-        raise RuntimeError(f"Numba {numba.__version__} is not the one that the extra 'web' pins")
+    if not numba.__version__.startswith(PINNED):
+        raise RuntimeError(
+            f"Numba {numba.__version__} is not the one that the extra 'web' pins, {PINNED}*"
+        )
     binding.initialize_all_targets()
     binding.initialize_all_asmprinters()
     context = cpu_target.target_context  # which makes its runtime for this machine first
     own: Any = context._internal_codegen
     own._library_class = Library
-    own._add_module = lambda module: None
-    own.set_env = lambda name, env: None
+    own._add_module = own.set_env = _nothing
     own._tm = machine()
     own._target_data = own._tm.target_data
     own._data_layout = str(own._target_data)
     own._create_empty_module = _empty
     with global_compiler_lock:
         runtime = Library(own, "runtime")
-        runtime._final_module.link_in(binding.parse_assembly(header() + _RUNTIME.format()))
+        runtime._final_module.link_in(binding.parse_assembly(header() + _RUNTIME))
         runtime.finalize()
     rtsys._library, rtsys._init = runtime, True
-    jit.FAST_MATH = set()
-    jit.keep = lambda dispatcher: None
-    jit.PIPELINES = {False: jit.inlining.Pipelines(_pipeline(False), _pipeline(False)), True: jit.inlining.Pipelines(_pipeline(True), _pipeline(True))}
+    pipelines = {noalias: pipeline(noalias) for noalias in (False, True)}
+    module: Any = jit
+    module.FAST_MATH = set()
+    module.keep = _nothing
+    module.PIPELINES = {noalias: Pipelines(each, each) for noalias, each in pipelines.items()}
+    module.kernel = _once(jit.kernel)
+
+
+def _once(kernel: Any) -> Any:
+    """The decorator without its promise to put a copy of every kernel wherever one is called: a third of the size, as fast."""
+
+    def decorator(function: Any = None, **options: Any) -> Any:
+        return kernel(function, **{**options, "forceinline": False})
+
+    return decorator
+
+
+def _nothing(*_given: Any) -> None:
+    """Nothing is loaded, nothing is kept."""
 
 
 def _empty(name: str) -> Any:
@@ -119,9 +147,9 @@ def _empty(name: str) -> Any:
     return module
 
 
-def _pipeline(noalias: bool) -> type:
+def pipeline(noalias: bool) -> type:
     """Numba's, with the promise of ``core.jit`` and without what calls a kernel from Python or C."""
-    passes: Any = compiler.DefaultPassBuilder
+    passes = compiler.DefaultPassBuilder
 
     class Pipeline(compiler.CompilerBase):  # type: ignore[misc]
         def define_pipelines(self) -> list[Any]:

@@ -12,6 +12,7 @@ export class Conductor {
   busy = true;
   idle = false;
   turns = 0;
+  most = Infinity; // turns after which it waits, for tests
   spent = 0; // [ms] in kernels, all workers together
 
   constructor(
@@ -54,7 +55,7 @@ export class Conductor {
 
   // The next increment, once all are done with this one.
   turn() {
-    if (this.busy || this.idle) return;
+    if (this.busy || this.idle || this.turns >= this.most) return;
     const message: ToWorker = this.resetting
       ? { kind: "reset", commands: this.resetting }
       : { kind: "turn", commands: this.waiting };

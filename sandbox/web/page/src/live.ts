@@ -14,6 +14,15 @@ export interface Slider {
   command: (string | number)[]; // and the value behind it
 }
 
+export interface Packing {
+  name: string;
+  title: string[];
+  dash: number[];
+  bounds: [number, number, number, number];
+  radius: number; // how near the handle is grabbed [R]
+  bodies: { role: string; discs: number[]; segments: number[]; polygons: number[][] }[]; // as seen from the body
+}
+
 export interface Live {
   scene: string;
   languages: string[];
@@ -23,12 +32,10 @@ export interface Live {
   question: string[];
   about: string[];
   views: PlayerView[];
-  packings: { name: string; title: string[]; dash: number[] }[];
+  packings: Packing[];
   seeds: number[];
-  bounds: [number, number, number, number];
   axes: [number, number]; // highest stroke [R] and force [k R] that the plot begins with
-  handle: { body: number; label: string[]; radius: number; axis: [number, number] };
-  bodies: { role: string; discs: number[]; segments: number[]; polygons: number[][] }[]; // as seen from the body
+  handle: { body: number; label: string[]; axis: [number, number] };
   sliders: Slider[];
   commands: Record<string, number>; // kinds of the entry `command`
   reasons: { text: string[]; level: number }[]; // why a relaxation ended

@@ -118,7 +118,7 @@ function follow(pane: Pane) {
     const at = pane.shown.handles[0]?.at;
     if (!at) return;
     const near = 24 / ((pane.camera.k * canvas.clientWidth) / canvas.width); // so many pixels
-    if (Math.abs(x - at[0]) > Math.max(LIVE.handle.radius, near) || Math.abs(y - at[1]) > Math.max(2, near)) return;
+    if (Math.abs(x - at[0]) > Math.max(LIVE.packings[pane.index].radius, near) || Math.abs(y - at[1]) > Math.max(2, near)) return;
     canvas.setPointerCapture(event.pointerId);
     offset = [at[0] - x, at[1] - y];
     grab();
@@ -146,23 +146,26 @@ function arrange() {
   const stage = $("stage");
   const scrolls = getComputedStyle(stage).flexGrow === "0";
   const [wide, high] = [stage.clientWidth, scrolls ? Math.max(innerHeight * 0.62, 240) : stage.clientHeight];
-  const [x0, y0, x1, y1] = LIVE.bounds;
+  const sizes = panes.map(({ shown: { bounds: [x0, y0, x1, y1] } }) => [x1 - x0, y1 - y0]);
+  const tallest = Math.max(...sizes.map(([, height]) => height));
   let [best, columns] = [0, 1];
   for (let count = 1; count <= panes.length; count++) {
     const rows = Math.ceil(panes.length / count);
-    const k = Math.min((wide / count - 20) / (x1 - x0), (high / rows - 110) / (y1 - y0));
+    const k = Math.min(...sizes.map(([w, h]) => Math.min((wide / count - 20) / w, (high / rows - 110) / h)));
     if (k > best * 1.02) [best, columns] = [k, count];
   }
   stage.style.setProperty("--columns", String(columns));
   stage.style.setProperty("--lines", "1");
-  stage.style.setProperty("--cell", scrolls ? `${Math.round(Math.max(best * (y1 - y0) + 20, 100))}px` : "auto");
+  stage.style.setProperty("--cell", scrolls ? `${Math.round(Math.max(best * tallest + 20, 100))}px` : "auto");
   const ratio = devicePixelRatio || 1;
   for (const canvas of [...panes.map((pane) => pane.canvas), $<HTMLCanvasElement>("plot")]) {
     const { clientWidth, clientHeight } = canvas.parentElement!;
     canvas.width = Math.max(Math.round(clientWidth * ratio), 1);
     canvas.height = Math.max(Math.round(clientHeight * ratio), 1);
   }
-  for (const pane of panes) pane.camera = cameraFor(LIVE.bounds, pane.canvas.width, pane.canvas.height, 10 * ratio);
+  const fitted = panes.map(({ canvas, shown }) => cameraFor(shown.bounds, canvas.width, canvas.height, 10 * ratio));
+  const scale = Math.min(...fitted.map((camera) => camera.k)); // one scale for all
+  for (const { canvas, shown, camera } of panes) Object.assign(camera, cameraFor(shown.bounds, canvas.width, canvas.height, 0, scale));
   dirty = true;
 }
 
@@ -227,7 +230,7 @@ function speak() {
   setText($("chains"), word("chains"));
   setText($("theme"), word(state.theme === "dark" ? "to_light" : "to_dark"));
   setText($("language"), run.words[(language + 1) % LIVE.languages.length].name);
-  setText($("seed-label"), word("new_packing"));
+  setText($("seed-label"), word("new"));
   setText($("view-label"), word("view"));
   $<HTMLSelectElement>("view").replaceChildren(...LIVE.views.map((each, k) => option(say(each.title), k, state.view)));
   $<HTMLSelectElement>("seed").replaceChildren(...LIVE.seeds.map((seed, k) => option(word("seed", { seed }), k, state.seed)));

@@ -1,6 +1,6 @@
 // Packings side by side: canvases, and what is said above each.
 
-import type { Live } from "./live";
+import type { Live, Packing } from "./live";
 import type { Seen } from "./shared";
 
 export const $ = <Kind extends HTMLElement>(id: string) => document.getElementById(id) as Kind;
@@ -30,14 +30,14 @@ export class Pane {
   private readonly swatch = element("span", "swatch");
 
   constructor(private readonly live: Live, readonly index: number) {
-    const { name, title, dash } = live.packings[index];
+    const { name, title, dash, bounds } = live.packings[index];
     const packings = PAGE.packings as Record<string, { colour: number }>;
     const none = new Float64Array();
     this.shown = {
       ...{ packing: name, title, moments: 1, count: 0, labels: [], there: [], pointed: [], squeezed: [] },
       ...{ x: none, y: none, p: none, q1: none, q2: none, rest: none, nu: none, spin: none, rubs: false, box: null },
       ...{ i: [], j: [], pairs: 0, withBodies: 0, bearing: none, dx: none, dy: none, active: [new Uint32Array()] },
-      ...{ bodies: [], handles: [], bounds: live.bounds, stroke: [], force: [], at: [0], counts: false, events: [] },
+      ...{ bodies: [], handles: [], bounds, stroke: [], force: [], at: [0], counts: false, events: [] },
       look: { colour: packings[name].colour, dash },
     };
     this.canvas.setAttribute("role", "img");
@@ -76,7 +76,7 @@ export class Pane {
       dx: seen.endX.map((x, k) => x - seen.grains.x[grain(k)]),
       dy: seen.endY.map((y, k) => y - seen.grains.y[grain(k)]),
       active: [Uint32Array.from(seen.first.keys())],
-      bodies: live.bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns))),
+      bodies: live.packings[this.index].bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns))),
     });
     if (this.count("rows") === 1) {
       shown.stroke = [];
@@ -118,7 +118,8 @@ export class Pane {
   }
 
   private forceSaid(): string {
-    return `${number(this.row("resisting"), 2)} k R`;
+    const [, unit] = labelParts(say(run.labels.force));
+    return `${number(this.row("resisting"), 2)} ${unit}`.trim();
   }
 
   private outSaid(): string {
@@ -133,7 +134,7 @@ export class Pane {
   }
 }
 
-function placed(body: Live["bodies"][number], [x, y]: Float64Array): PlayerBody {
+function placed(body: Packing["bodies"][number], [x, y]: Float64Array): PlayerBody {
   const shape: number[] = [];
   for (let k = 0; k < body.discs.length; k += 3) shape.push(x + body.discs[k], y + body.discs[k + 1], body.discs[k + 2]);
   for (let k = 0; k < body.segments.length; k += 5) {

@@ -100,6 +100,7 @@ declare function settle(code: string, theme: string): void;
 declare function themeAsked(auto: boolean, otherwise: string): string;
 declare function languageAsked(auto: boolean, languages: string[], otherwise: string): number;
 declare function topOf(view: PlayerView, panes: PlayerPane[]): number;
+declare function labelParts(label: string): [name: string, unit: string];
 declare const FINER: number[];
 
 declare class Scenery {

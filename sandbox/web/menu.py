@@ -1,0 +1,53 @@
+"""The page from which one goes to the scenes."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+
+from sandbox import __version__
+from sandbox.player.pieces import asset, colours, filled, marked, policy, spoken
+from sandbox.web.toolchain import PAGE
+from sandbox.words import language, words
+from sandbox.words.language import available
+
+FILE = "index.html"
+_SCRIPT = """
+"use strict";
+{manners}
+const languages = {languages};
+settle(languages[languageAsked(true, languages, "{shown}")], themeAsked(true, "dark"));
+"""
+
+
+def menu(names: Sequence[str]) -> str:
+    """The HTML text, with a way to the page of each scene."""
+    shown = language.present()
+    script = _SCRIPT.format(manners=asset("manners.js"), languages=list(available()), shown=shown)
+    values = {
+        "language": shown,
+        "policy": policy(script),
+        "version": __version__,
+        "title": html.escape(words.SPLASH_TITLE),
+        "heading": spoken(lambda: words.SPLASH_TITLE, shown),
+        "about": spoken(lambda: words.SPLASH_ABOUT, shown),
+        "style": "\n".join(
+            [colours(), asset("player.css"), (PAGE / "page.css").read_text(encoding="utf-8")]
+        ),
+        "scenes": "".join(_card(name, shown) for name in names),
+        "script": script,
+    }
+    return filled((PAGE / "menu.html").read_text(encoding="utf-8"), values)
+
+
+def _card(name: str, shown: str) -> str:
+    def told() -> str:
+        title, question = html.escape(words.title(name)), html.escape(words.question(name))
+        return f"<strong>{title}</strong><p>{question}</p>"
+
+    return f'<a href="{name}.html" data-own>{marked(told, shown)}</a>'
+
+
+def way_back(shown: str) -> str:
+    """From the page of a scene to the menu."""
+    return f'<a href="{FILE}" data-own>{spoken(lambda: words.BUTTONS["menu"], shown)}</a>'

@@ -1,0 +1,257 @@
+"""The page of a scene as one self-contained file: kernels, packings, words and scripts. It asks for nothing."""
+
+from __future__ import annotations
+
+import base64
+import html
+import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from sandbox import __version__
+from sandbox.draw.theme import packing_dash
+from sandbox.draw.views import VIEWS, View
+from sandbox.lessons import tours
+from sandbox.player.page import about, words_of
+from sandbox.player.pieces import as_json, asset, colours, filled, marked, policy, spoken
+from sandbox.web.increment import course
+from sandbox.web.increment.memory import COUNTS, FIRST_INT, PART, ROW, SIZES
+from sandbox.web.increment.systems import PLACES
+from sandbox.web.laid_out import Blocks, laid_out
+from sandbox.web.toolchain import PAGE
+from sandbox.words import language, words
+from sandbox.words.language import available, in_each, speaking
+from scenes.scene import HAND_STRENGTH, STRONGEST, Scene, Setup, Values
+
+DRAWING = ("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "plot.js")
+SHOWN = ("kind", "skin", "shape", "area", "chains")  # what follows from shapes and forces alone
+# The window's words that the page says too.
+SAID = ("force_error", "settling", "grains_out", "hand_limit", "seed")
+REASONS = (
+    *("converged", "budget", "not finite", "collapsed", "budget"),
+    *("iteration limit", "sunk"),
+)  # by the kernels' numbers
+LEVELS = {"converged": 0, "budget": 1, "iteration limit": 1}  # of the lamp; all others 2
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A slider: a parameter, how far it goes, and the entry of the kernels that sets it."""
+
+    name: str
+    least: float
+    most: float
+    step: float
+    command: tuple[str | int, ...]
+
+
+SLIDES = (
+    Slide(HAND_STRENGTH, 1.0, 41.0, 0.5, ("set_strength",)),
+    Slide("friction", 0.0, 1.5, 0.05, ("set_friction",)),
+    Slide("regular_poisson_ratio", 0.0, 0.95, 0.05, ("set_ratio", 0)),
+    Slide("auxetic_poisson_ratio", -0.95, -0.05, 0.05, ("set_ratio", 1)),
+)
+
+
+@dataclass(frozen=True)
+class Built:
+    """A scene with packings of several seeds: ``setups`` by seed and packing, as they are before the first increment."""
+
+    scene: Scene
+    settings: Values
+    packings: tuple[str, ...]
+    seeds: tuple[int, ...]
+    setups: tuple[tuple[Setup, ...], ...]
+
+    @property
+    def first(self) -> Setup:
+        """One of them: handles and labels are the same in all, bodies in all of a packing."""
+        return self.setups[0][0]
+
+
+def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") -> str:
+    """The HTML text. ``menu`` is markup before the choices. Raises InputError for a scene that a page cannot run."""
+    blocks = [
+        [laid_out(built.scene, setup, built.settings) for setup in some] for some in built.setups
+    ]
+    packed = b"".join(part.tobytes() for some in blocks for both in some for part in both)
+    script = (
+        f'"use strict";\nconst PAGE = {as_json(about(_words))};\n'
+        f"const PLURALS = [{', '.join(map(_plural, available()))}];\n"
+        f"const LIVE = {as_json(_live(built, blocks))};\n"
+        f"const WORKER = {as_json(scripts['worker.ts'])};\n"
+        + "\n".join(asset(name) for name in DRAWING)
+        + "\n"
+        + scripts["page.ts"]
+    )
+    code = language.present()
+    with speaking(code):
+        values = {
+            "language": code,
+            "theme": "dark",
+            "policy": _policy(script),
+            "version": __version__,
+            "title": html.escape(words.title(built.scene.name)),
+            "question": html.escape(words.question(built.scene.name)),
+            "style": "\n".join(
+                [colours(), asset("player.css"), (PAGE / "page.css").read_text(encoding="utf-8")]
+            ),
+            "menu": menu,
+            "story": _tour(built.scene, code),
+            "noscript": html.escape(words_of(code)["noscript"]),
+            "kernels": _packed(kernels),
+            "packings": _packed(packed),
+            "script": script,
+        }
+    return filled((PAGE / "page.html").read_text(encoding="utf-8"), values)
+
+
+def _tour(scene: Scene, shown: str) -> str:
+    """What the scene's tour says, to be read; why is told to who asks."""
+    steps = tours.steps(scene.name)
+    if not steps:
+        return ""
+
+    def told() -> str:
+        return "".join(
+            f'<li><p>{html.escape(str(step.say))}</p><p class="do">{html.escape(str(step.do))}</p>'
+            f"<details><summary>{html.escape(words.TOUR_WHY)}</summary><p>{html.escape(str(step.why))}</p></details></li>"
+            for step in steps
+        )
+
+    title = spoken(lambda: words.TOUR, shown)
+    return f'<section class="card"><h2>{title}</h2>{marked(told, shown, "ol")}</section>'
+
+
+def _policy(script: str) -> str:
+    """As of a page that plays a run, and it may compile kernels and have workers of its own making."""
+    return (
+        policy(script).replace("script-src ", "script-src 'wasm-unsafe-eval' ")
+        + "; worker-src blob:"
+    )
+
+
+def _packed(content: bytes) -> str:
+    return base64.b64encode(zlib.compress(content, 9)).decode("ascii")
+
+
+def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
+    """What the script knows of the scene: see ``live.ts``."""
+    scene, setup = built.scene, built.first
+    handle = setup.handles[0]
+    body = setup.world[handle.body]
+    stroke = float(built.settings.get("stroke", 1.0))
+    strength = float(built.settings.get(HAND_STRENGTH, 1.0))
+    own = setup.curve is not None  # then nobody knows yet how far it goes
+    return {
+        "scene": scene.name,
+        "languages": available(),
+        "layout": {
+            "part": PART._asdict(),
+            "sizes": SIZES._asdict(),
+            "counts": COUNTS._asdict(),
+            "row": ROW._asdict(),
+            "firstInt": getattr(PART, FIRST_INT),
+            "columns": PLACES,
+        },
+        "labels": {
+            "force": in_each(lambda: words.say(setup.force_label)),
+            "stroke": in_each(lambda: words.say(setup.stroke_label)),
+        },
+        "title": in_each(lambda: words.title(scene.name)),
+        "question": in_each(lambda: words.question(scene.name)),
+        "about": in_each(lambda: words.about(scene.name)),
+        "views": [_view(VIEWS[name]) for name in SHOWN],
+        "packings": [
+            _packing(name, setup)
+            for name, setup in zip(built.packings, built.setups[0], strict=True)
+        ],
+        "seeds": built.seeds,
+        "axes": [1.0, 0.01] if own or strength >= STRONGEST else [stroke, 1.2 * strength],
+        "handle": {
+            "body": setup.world.index(handle.body),
+            "label": in_each(lambda: words.say(handle.label)),
+            "axis": body.axis,
+        },
+        "sliders": [_slider(built, slide) for slide in SLIDES if slide.name in built.settings],
+        "commands": {
+            "grab": course.GRAB,
+            "move": course.MOVE,
+            "release": course.RELEASE,
+            "scriptOn": course.SCRIPT_ON,
+            "scriptOff": course.SCRIPT_OFF,
+        },
+        "reasons": [_reason(reason) for reason in REASONS],
+        "machine": STRONGEST,
+        "lockedAfter": course.LOCKED_AFTER,
+        "lengths": [[[ints.nbytes, floats.nbytes] for ints, floats in some] for some in blocks],
+        "start": {"theme": "dark", "auto": True},
+    }
+
+
+def _reason(reason: str) -> dict[str, Any]:
+    return {"text": in_each(lambda: words.STOPPED[reason]), "level": LEVELS.get(reason, 2)}
+
+
+def _packing(name: str, setup: Setup) -> dict[str, Any]:
+    return {
+        "name": name,
+        "title": in_each(lambda: words.PACKINGS.get(name, name)),
+        "dash": packing_dash(name),
+        "bounds": setup.bounds,
+        "radius": setup.handles[0].radius,
+        "bodies": [
+            {
+                "role": body.role,
+                "discs": [v for row in body.discs for v in row],
+                "segments": [v for row in body.segments for v in row],
+                "polygons": [[v for at in corners for v in at] for corners, _ in body.polygons],
+            }
+            for body in setup.world.bodies
+        ],
+    }
+
+
+def _view(view: View) -> dict[str, Any]:
+    return {
+        "name": view.name,
+        "title": in_each(lambda: view.title),
+        "unit": view.unit,
+        "top": None,
+        "least": view.least,
+        "valued": view.measure is not None,
+        "ramp": "fill",
+        "made": view.made,
+        "chains": view.chains,
+        "onlyChains": view.only_chains,
+    }
+
+
+def _slider(built: Built, slide: Slide) -> dict[str, Any]:
+    parameter = next(p for p in built.scene.parameters if p.name == slide.name)
+    top = in_each(lambda: words.TOPS[slide.name]) if slide.name in words.TOPS else None
+    return {
+        "name": slide.name,
+        "title": in_each(lambda: words.parameter_name(slide.name)),
+        "unit": parameter.unit,
+        "least": slide.least,
+        "most": slide.most,
+        "step": slide.step,
+        "value": min(float(built.settings[slide.name]), slide.most),
+        "top": top,
+        "command": slide.command,
+    }
+
+
+def _words(code: str) -> dict[str, str]:
+    """All that the script says in a language."""
+    table = language.table(code)
+    said = words_of(code)
+    said |= {name: table["words"][name] for name in SAID}
+    said |= {name: table["buttons"][name] for name in ("reset", "drive", "new")}
+    return said
+
+
+def _plural(code: str) -> str:
+    return f"(n) => +({language.table(code)['plural']})"

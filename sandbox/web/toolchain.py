@@ -1,0 +1,109 @@
+"""What pages are built with: kernels compiled to WebAssembly, and scripts bundled by esbuild. Both are kept in the user's cache.
+
+The compiler comes from PyPI with the extra ``web``, the bundler from npm as the lock file says; to run the program takes neither.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from platformdirs import user_cache_path
+
+from core.errors import InputError
+from core.kernel_cache import CORE, source_hash
+from sandbox.extras import require
+
+HERE = Path(__file__).parent
+PAGE = HERE / "page"
+ROOT = HERE.parents[1]
+SCRIPTS = ("page.ts", "worker.ts")
+
+
+def kernels() -> bytes:
+    """All that a page calls, as WebAssembly: the same kernels as on the desk, without fast math.
+
+    Raises InputError where the compiler is not installed, or fails.
+    """
+    require("pages need", "ziglang", "the linker of Zig", "web")
+    sources = source_hash(CORE, HERE / "increment", HERE / "wasm")
+    runtime = hashlib.sha256((HERE / "wasm" / "runtime.c").read_bytes()).hexdigest()[:8]
+    return _kept(f"kernels-{sources}-{runtime}.wasm", _compile).read_bytes()
+
+
+def _compile(out: Path) -> None:
+    paths = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    _run(
+        [sys.executable, "-m", "sandbox.web.wasm", str(out)],
+        ROOT,
+        "the kernels cannot be compiled",
+        PYTHONPATH=paths,
+    )
+
+
+def scripts() -> dict[str, str]:
+    """The scripts of the page, bundled, by the names in ``SCRIPTS``. Raises InputError where Node.js is missing, or fails."""
+    digest = hashlib.sha256()
+    files = sorted(path for path in PAGE.rglob("*") if path.is_file() and _own(path))
+    for path in files:
+        digest.update(path.relative_to(PAGE).as_posix().encode())
+        digest.update(path.read_bytes())
+    folder = _kept(f"page-{digest.hexdigest()[:16]}", lambda out: _bundle(files, out))
+    return {name: (folder / name).read_text(encoding="utf-8") for name in SCRIPTS}
+
+
+def _own(path: Path) -> bool:
+    return "node_modules" not in path.parts and path.suffix in (".ts", ".json")
+
+
+def _bundle(files: list[Path], out: Path) -> None:
+    npm = shutil.which("npm")
+    if npm is None:
+        raise InputError("pages need npm, which is not installed: install Node.js 20 or newer")
+    work = out.with_suffix(".work")
+    shutil.rmtree(work, ignore_errors=True)
+    for path in files:
+        copy = work / path.relative_to(PAGE)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, copy)
+    trouble = "the page's scripts cannot be bundled"
+    _run([npm, "ci", "--no-audit", "--no-fund"], work, trouble)
+    _run([npm, "run", "--silent", "check"], work, trouble)
+    out.mkdir()
+    options = ["--bundle", "--format=iife", "--target=es2022", "--minify", "--legal-comments=none"]
+    for name in SCRIPTS:
+        outfile = f"--outfile={out / name}"
+        command = [npm, "exec", "--", "esbuild", f"src/{name}", *options, outfile]
+        _run(command, work, trouble)
+    shutil.rmtree(work)
+
+
+def _kept(name: str, make: Callable[[Path], None]) -> Path:
+    """What ``make`` makes, from the cache if it is there."""
+    folder = user_cache_path("auxetic-sandbox") / "web"
+    there = folder / name
+    if not there.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        new = folder / f"{name}.new-{os.getpid()}"
+        make(new)
+        new.replace(there)
+    return there
+
+
+def _run(command: list[str], folder: Path, trouble: str, **environment: str) -> None:
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        said = (done.stderr or done.stdout).strip().splitlines()
+        raise InputError(f"{trouble}: {said[-1] if said else 'no reason given'}")

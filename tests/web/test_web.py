@@ -1,0 +1,217 @@
+"""Pages that run in a browser: the kernels on the desk and as WebAssembly against the session, bit for bit; and the page itself.
+
+What needs the extra ``web``, Node.js or Chromium is skipped where that is missing, and says so.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.errors import InputError
+from sandbox.web import building
+from sandbox.web.increment.memory import COUNTS
+from sandbox.web.increment.systems import PLACES
+from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
+from scenes import registry
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+PAGE = ROOT / "sandbox" / "web" / "page"
+CHROMIUM = next(
+    (
+        found
+        for name in ("chromium", "chromium-browser", "google-chrome")
+        if (found := shutil.which(name))
+    ),
+    None,
+)
+RUNS = {"regular": 72, "auxetic": 120}  # increments: until it is locked, and until some have left
+pytestmark = pytest.mark.slow
+
+
+def missing(*modules: str) -> list[str]:
+    return [name for name in modules if importlib.util.find_spec(name) is None]
+
+
+@pytest.fixture(scope="session")
+def exact(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What the session and the kernels say on the desk, both without fast math, by packing."""
+    found = {}
+    for kind, steps in RUNS.items():
+        out = tmp_path_factory.mktemp("exact") / f"{kind}.npz"
+        settings = [f"{name}={value}" for name, value in building.SCENES["hopper"].items()]
+        command = [
+            sys.executable,
+            "-m",
+            "tests.web.exact",
+            str(out),
+            "hopper",
+            kind,
+            "1",
+            str(steps),
+        ]
+        subprocess.run([*command, *settings], check=True, cwd=ROOT, timeout=1800)
+        with np.load(out) as numbers:
+            found[kind] = dict(numbers)
+    return found
+
+
+@pytest.fixture(scope="session")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The kernels as WebAssembly."""
+    lacking = missing("ziglang", "wasmtime")
+    if lacking:
+        pytest.skip(f"without {' and '.join(lacking)}: install the extra web")
+    from sandbox.web.toolchain import kernels
+
+    path = tmp_path_factory.mktemp("kernels") / "kernels.wasm"
+    path.write_bytes(kernels())
+    return path
+
+
+def first_differing(these: Any, those: Any) -> int:
+    """−1 where all are alike."""
+    differing = np.flatnonzero(np.asarray(these) != np.asarray(those))
+    return int(differing[0]) if len(differing) else -1
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_kernels_on_the_desk_do_what_the_session_does(exact: dict[str, Any], kind: str) -> None:
+    said = exact[kind]
+    assert first_differing(said["session"], said["kernels"]) == -1
+    assert len(set(said["session"].tolist())) > 60  # it has moved
+
+
+def test_the_runs_show_what_they_are_for(exact: dict[str, Any]) -> None:
+    assert 0.0 in exact["regular"]["shares"]  # all the hand has moves nothing
+    assert exact["auxetic"]["left"][-1] > 5
+
+
+@pytest.mark.parametrize("kind", RUNS)
+def test_webassembly_gives_the_bits_of_the_desk(
+    exact: dict[str, Any], program: Path, kind: str
+) -> None:
+    said = exact[kind]
+    hashes, sizes = replayed(program, said)
+    assert first_differing(said["session"], hashes) == -1
+    assert sizes[-1] == sizes[len(sizes) // 2]  # memory that was needed once is used again
+
+
+def replayed(program: Path, said: dict[str, Any]) -> tuple[list[str], list[int]]:
+    """The same commands to the compiled kernels: hashes, and bytes of memory, after each increment."""
+    from sandbox.web.host import Host
+    from sandbox.web.increment import course
+    from tests.web.exact import commands
+
+    first: Blocks = said["ints"], said["floats"]
+    host = Host(program, first)
+    driven = int(part(first, "counts", len(COUNTS))[COUNTS.driven])
+    assert host.call("advance") == 1
+    hashes, sizes = [state_hash(host.blocks())], [host.size]
+    steps = len(said["session"]) - 1
+    for step in range(steps):
+        what, where = commands(steps).get(step, ("", 0.0))
+        if what == "script":
+            host.call("command", course.SCRIPT_ON, driven, 0.0, 0.0)
+        elif what == "move":
+            x, y = part(host.blocks(), "places", PLACES * (driven + 1))[PLACES * driven :][:2]
+            host.call("command", course.GRAB, driven, 0.0, 0.0)
+            host.call("command", course.MOVE, driven, float(x), float(y) + where)
+        host.call("advance")
+        hashes.append(state_hash(host.blocks()))
+        sizes.append(host.size)
+    return hashes, sizes
+
+
+def test_what_a_page_cannot_run_is_refused() -> None:
+    scene = registry.get("intruder")
+    settings = scene.settings({"grains": 20})
+    setup = scene.build(settings, "mixed", 1)
+    with pytest.raises(InputError, match="a page runs scenes in an open box"):
+        laid_out(scene, setup, settings)
+    with pytest.raises(InputError, match="there is no page of intruder: choose hopper"):
+        building.scene_named("intruder")
+
+
+def test_the_page_computes_no_forces() -> None:
+    force = r"(?:force|bearing|resisting|reactions?|hand_[xy]|push|residual)"
+    arithmetic = re.compile(
+        rf'\b{force}\b["\])]*\s*(?:[-+*/]|\*\*)\s*\w|\w\s*[-+*/]\s*(?:\w+\.)*{force}\b',
+        re.IGNORECASE,
+    )
+    sources = sorted((PAGE / "src").glob("*.ts"))
+    assert len(sources) > 4
+    for path in sources:
+        code = re.sub(
+            r"//.*|/\*[\s\S]*?\*/|`[^`]*`|\"[^\"]*\"", '""', path.read_text(encoding="utf-8")
+        )
+        found = [line for line in code.splitlines() if arithmetic.search(line)]
+        assert not found, f"{path.name}: {found}"
+
+
+@pytest.fixture(scope="session")
+def tried(program: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What the page of the hopper does in a browser."""
+    if CHROMIUM is None or shutil.which("npm") is None:
+        pytest.skip("without Chromium or npm: no page can be tried")
+    folder = tmp_path_factory.mktemp("page")
+    (path,) = building.write(folder, ["hopper"], lambda _text, _share: None, single=True)
+    for name in ("package.json", "package-lock.json"):
+        shutil.copyfile(PAGE / name, folder / name)
+    subprocess.run(
+        ["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True, capture_output=True
+    )
+    done = subprocess.run(
+        ["node", str(HERE / "try_page.mjs"), str(path), str(folder)],
+        env={**os.environ, "CHROMIUM": CHROMIUM},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=900,
+    )
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found | {"size": path.stat().st_size}
+
+
+def blocks_of(said: dict[str, list[str]]) -> Blocks:
+    ints = np.array([int(number) for number in said["ints"]], dtype=np.int64)
+    floats = np.array([int(number) for number in said["floats"]], dtype=np.uint64)
+    return ints, floats.view(np.float64)
+
+
+def test_a_page_asks_for_nothing_and_says_nothing(tried: dict[str, Any]) -> None:
+    assert tried["faults"] == []
+    assert tried["size"] <= building.SINGLE
+
+
+def test_in_the_page_the_regular_hopper_locks_and_the_auxetic_one_flows(
+    tried: dict[str, Any],
+) -> None:
+    regular, _, auxetic = tried["dragged"]
+    assert regular["locked"]
+    assert not auxetic["locked"]
+    assert auxetic["out"] > 0
+    assert auxetic["stroke"] > regular["stroke"]
+
+
+def test_a_reset_is_the_start_to_the_last_bit(tried: dict[str, Any]) -> None:
+    assert tried["again"] == tried["first"]
+
+
+def test_the_page_has_the_bits_of_the_desk(tried: dict[str, Any], exact: dict[str, Any]) -> None:
+    start, driven = tried["blocks"]
+    for kind, place in (("regular", 0), ("auxetic", 2)):
+        said = exact[kind]["session"]
+        assert state_hash(blocks_of(start[place])) == said[0]
+    assert state_hash(blocks_of(driven[2])) == exact["auxetic"]["session"][60]
