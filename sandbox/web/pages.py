@@ -168,6 +168,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             for name, setup in zip(built.packings, built.setups[0], strict=True)
         ],
         "seeds": built.seeds,
+        "plotsHand": not own,
         "axes": [1.0, 0.01] if own or strength >= STRONGEST else [stroke, 1.2 * strength],
         "handle": {
             "body": setup.world.index(handle.body),

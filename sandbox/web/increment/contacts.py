@@ -81,15 +81,16 @@ def reactions(bodies, contacts, pulls):
         total[body, 0] += -values[FX, k]
         total[body, 1] += -values[FY, k]
         total[body, 2] += -(x * values[FY, k] - y * values[FX, k])
-    for k in range(pulls.i.shape[0]):
-        if pulls.j[k] >= 0:
+    who, pull = pulls.who, pulls.values
+    for k in range(pulls.used):
+        if who[1, k] >= 0:
             continue
-        body = owner[pulls.primitive[k]]
-        fx, fy = -pulls.fx[k], -pulls.fy[k]
+        body = owner[who[2, k]]
+        fx, fy = -pull[0, k], -pull[1, k]
         rubbed[body, 0] += fx
         rubbed[body, 1] += fy
-        rubbed[body, 2] += (pulls.x[k] - places[body, X]) * fy - (pulls.y[k] - places[body, Y]) * fx
-    if pulls.i.shape[0]:
+        rubbed[body, 2] += (pull[2, k] - places[body, X]) * fy - (pull[3, k] - places[body, Y]) * fx
+    if pulls.used:
         total += rubbed
     return total
 

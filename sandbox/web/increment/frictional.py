@@ -11,15 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats
-from core.frictional_contacts import BODY, GRAIN
+from core.candidates import count_listed, find_corners, list_candidates, recall, round_corners
 from core.jit import kernel
-from core.marks import lay_out, measure, slips
-from core.neighbors import SLOT_PADDING
-from core.rigid_contacts import EDGE, VERTEX
-from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms, prepare_friction
+from core.marks import lay_out, measure, slips, tangential_forces
+from core.slip import FrictionTerms, prepare_friction
 
 Indices = NDArray[np.int64]
-SAME_POINT = 1e-9  # [R]
 
 
 class Origin(NamedTuple):
@@ -50,49 +47,11 @@ class Contacts(NamedTuple):
 
 
 class Pulls(NamedTuple):
-    """Tangential forces at the end of an increment, (K,) each: what is needed of ``core.frictional_contacts.FrictionForces``."""
+    """Tangential forces at the end of an increment, as ``core.marks.tangential_forces`` packs them to the front."""
 
-    i: Indices
-    j: Indices  # -1: a rigid body
-    primitive: Indices  # of a rigid body; -1 between grains
-    fx: Floats  # on grain i [k R]
-    fy: Floats
-    x: Floats  # where it acts [R]
-    y: Floats
-
-
-@kernel(allocates=True)
-def corners(primitives):
-    """For each primitive (M, 2): the edges that a vertex lies between; -1 where there is none."""
-    many = primitives.shape[0]
-    found = np.full((many, 2), -1, np.int64)
-    for v in range(many):
-        if primitives[v, 0] != VERTEX:
-            continue
-        for side in range(2):
-            ux, uy = primitives[v, 3 + 2 * side], primitives[v, 4 + 2 * side]
-            for e in range(many):
-                if primitives[e, 0] != EDGE:
-                    continue
-                radius = abs(primitives[e, 7] - primitives[v, 7])
-                start = max(
-                    abs(primitives[e, 1] - primitives[v, 1]),
-                    abs(primitives[e, 2] - primitives[v, 2]),
-                    abs(-primitives[e, 3] - ux),
-                    abs(-primitives[e, 4] - uy),
-                    radius,
-                )
-                end = max(
-                    abs(primitives[e, 5] - primitives[v, 1]),
-                    abs(primitives[e, 6] - primitives[v, 2]),
-                    abs(primitives[e, 3] - ux),
-                    abs(primitives[e, 4] - uy),
-                    radius,
-                )
-                if min(start, end) < SAME_POINT:
-                    found[v, side] = e
-                    break
-    return found
+    used: int
+    who: Indices  # (3, …) grain, other grain or -1, primitive or -1
+    values: Floats  # (6, …) force on the grain x, y [k R], where it acts x, y [R], and the branch vector x, y [R]
 
 
 @kernel(allocates=True)
@@ -101,12 +60,14 @@ def first_contacts(origin, primitives):
     if origin is None:
         return None
     grains = origin.label.shape[0]
+    corners = np.empty((primitives.shape[0], 2), np.int64)
+    find_corners(primitives, corners)
     return Contacts(
         False,
         np.zeros(0, np.int64),
         origin.keys,
         origin.slips,
-        corners(primitives),
+        corners,
         np.zeros(0, np.uint32),
         np.zeros(0, np.uint32),
         np.zeros(0, np.int64),
@@ -191,84 +152,35 @@ def commit(m, contacts, primitives, box):
     )
 
 
-@kernel
-def place_of(keys, key):
-    """Where a key stands among ascending ones; -1 if it does not."""
-    low, high = 0, keys.shape[0]
-    while low < high:
-        middle = (low + high) // 2
-        if keys[middle] < key:
-            low = middle + 1
-        else:
-            high = middle
-    return low if low < keys.shape[0] and keys[low] == key else -1
-
-
-@kernel(allocates=True)
-def round_corners(grains, pairs, grain, primitive, corner, slip, gap, known):
-    """An edge and the vertex at its end share, for each grain, the slip of the one that has any, and the gap."""
-    at = np.full((grains, corner.shape[0]), -1, np.int64)
-    for k in range(grain.shape[0]):
-        at[grain[k], primitive[k]] = pairs + k
-    for side in range(2):
-        for k in range(grain.shape[0]):
-            edge = corner[primitive[k], side]
-            e = at[grain[k], edge] if edge >= 0 else -1
-            if e < 0:
-                continue
-            v = pairs + k
-            if known[e] and not known[v]:
-                slip[v] = slip[e]
-            if known[v] and not known[e]:
-                slip[e] = slip[v]
-            gap[v] = min(gap[v], gap[e])
-
-
 @kernel(allocates=True, forceinline=False)
 def candidates(m, origin, contacts, rigid, box):
     """Take every pair of new lists as a candidate, with its slip counted from the origin, or from here if that is past."""
     if contacts is None:
         return None
-    lists, identity, label = m.lists, m.identity, origin.label
-    grains, pairs, used = label.shape[0], 0, rigid.used[0]
-    width = lists.width
-    entries = 0
-    for t in range(width.shape[0]):
-        pairs += width[t]
-        entries += (width[t] + SLOT_PADDING - 1) // SLOT_PADDING * SLOT_PADDING
-    many = pairs + used
+    lists, used = m.lists, rigid.used[0]
+    pairs, entries = count_listed(lists.width)
+    grains, many = origin.label.shape[0], pairs + used
+    grain, primitive = rigid.grain[:used], rigid.primitive[:used].copy()
     at_i, at_j = np.empty(many, np.uint32), np.empty(pairs, np.uint32)
     keys = np.empty(many, np.int64)
-    place, first, second = lists.place, lists.first, lists.second
-    for k in range(pairs):
-        i, j = place[first[k]], place[second[k]]
-        at_i[k] = i
-        at_j[k] = j
-        a, b = label[identity[i]], label[identity[j]]
-        keys[k] = min(a, b) * GRAIN + max(a, b)
-    grain, primitive = rigid.grain[:used], rigid.primitive[:used].copy()
-    for k in range(used):
-        at_i[pairs + k] = grain[k]
-        keys[pairs + k] = label[identity[grain[k]]] * GRAIN + BODY + primitive[k]
+    list_candidates(pairs, lists, m.identity, origin.label, grain, primitive, at_i, at_j, keys)
     start, rows = m.state, rigid.primitives
     if not contacts.listed:
         start = np.zeros((6, grains))
         for row in range(5):
             for i in range(grains):
-                start[row, i] = origin.state[row, identity[i]]
+                start[row, i] = origin.state[row, m.identity[i]]
         rows = origin.primitives
-    measured = np.empty((7, many))
-    measure(at_i, at_j, primitive, start, rows, box, measured)
-    marks, known = np.zeros((4, many)), np.zeros(many, np.bool_)
+    place = np.empty((7, many))
+    measure(at_i, at_j, primitive, start, rows, box, place)
+    marks, known = np.empty((4, many)), np.empty(many, np.bool_)
+    recall(keys, contacts.known, contacts.slips, marks[0], known)
     for k in range(many):
-        at = place_of(contacts.known, keys[k])
-        if at >= 0:
-            known[k] = True
-            marks[0, k] = contacts.slips[at]
-        marks[1, k] = max(measured[0, k], 0.0)
-        marks[2, k] = measured[1, k]
-        marks[3, k] = measured[2, k]
-    round_corners(grains, pairs, grain, primitive, contacts.corners, marks[0], marks[1], known)
+        marks[1, k] = max(place[0, k], 0.0)
+        marks[2, k] = place[1, k]
+        marks[3, k] = place[2, k]
+    room = np.empty((grains, rows.shape[0]), np.int64)
+    round_corners(pairs, at_i, primitive, contacts.corners, room, marks[0], marks[1], known)
     slots = np.zeros((4, entries))
     lay_out(lists, at_i, at_j, marks, lists.filled, slots)
     old = contacts.terms
@@ -299,16 +211,8 @@ def candidates(m, origin, contacts, rigid, box):
 
 @kernel(allocates=True)
 def no_pulls(room):
-    """``room`` forces, not filled in."""
-    return Pulls(
-        np.empty(room, np.int64),
-        np.empty(room, np.int64),
-        np.empty(room, np.int64),
-        np.empty(room),
-        np.empty(room),
-        np.empty(room),
-        np.empty(room),
-    )
+    """Room for so many forces, none of which is there."""
+    return Pulls(0, np.empty((3, room), np.int64), np.empty((6, room)))
 
 
 @kernel(allocates=True, forceinline=False)
@@ -317,38 +221,25 @@ def ended(m, contacts, primitives, box):
     if contacts is None:
         return np.zeros(0, np.int64), np.zeros(0), no_pulls(0)
     place, held = held_now(m, contacts, primitives, box)
-    at_i, at_j, pairs = contacts.at_i, contacts.at_j, contacts.at_j.shape[0]
-    stiffness, identity = m.grains.contact_stiffness, m.identity
-    count = 0
-    for k in range(at_i.shape[0]):
-        count += 1 if held[1, k] > 0.0 else 0
-    pulls = no_pulls(count)
-    count = 0
-    for k in range(at_i.shape[0]):
-        if not held[1, k] > 0.0:
-            continue
-        i = at_i[k]
-        reach = place[5, k]
-        x, y = m.state[0, i], m.state[1, i]
-        both = stiffness[i]
-        pulls.j[count] = -1
-        pulls.primitive[count] = -1
-        if k < pairs:
-            j = at_j[k]
-            reach += 0.5 * place[0, k]
-            both = 2.0 * stiffness[i] * stiffness[j] / (stiffness[i] + stiffness[j])
-            pulls.j[count] = identity[j]
-        else:
-            row = contacts.primitive[k - pairs]
-            x, y = primitives[row, 1] + place[1, k], primitives[row, 2] + place[2, k]
-            pulls.primitive[count] = row
-        pull = TANGENTIAL_STIFFNESS * both * held[0, k]
-        nx, ny = place[3, k], place[4, k]
-        pulls.i[count] = identity[i]
-        pulls.fx[count] = pull * ny
-        pulls.fy[count] = -pull * nx
-        pulls.x[count] = x + reach * nx
-        pulls.y[count] = y + reach * ny
-        count += 1
+    many = contacts.at_i.shape[0]
+    who, values, sliding = (
+        np.empty((3, many), np.int64),
+        np.empty((6, many)),
+        np.empty(many, np.bool_),
+    )
+    used = tangential_forces(
+        contacts.at_i,
+        contacts.at_j,
+        contacts.primitive,
+        m.state,
+        m.grains.contact_stiffness,
+        m.identity,
+        primitives,
+        place,
+        held,
+        who,
+        values,
+        sliding,
+    )
     known, kept = remembered(contacts.keys, held)
-    return known, kept, pulls
+    return known, kept, Pulls(used, who, values)

@@ -34,6 +34,7 @@ export interface Live {
   views: PlayerView[];
   packings: Packing[];
   seeds: number[];
+  plotsHand: boolean; // is it the force of the hand that is plotted?
   axes: [number, number]; // highest stroke [R] and force [k R] that the plot begins with
   handle: { body: number; label: string[]; axis: [number, number] };
   sliders: Slider[];

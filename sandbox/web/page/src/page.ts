@@ -14,6 +14,8 @@ let program: WebAssembly.Module;
 let packings: ArrayBuffer;
 let dirty = true;
 
+const PACE = 1000 / 60; // [ms] from one increment to the next, at least
+
 const view = () => LIVE.views[state.view];
 const look = (): PlayerLook => ({ theme: state.theme, view: view(), chains: state.chains, scale: devicePixelRatio || 1 });
 
@@ -89,7 +91,6 @@ function pull(x: number, y: number) {
     pane.hold();
   }
   hand("move", x, y);
-  dirty = true;
 }
 
 function letGo() {
@@ -100,7 +101,6 @@ function letGo() {
     pane.hold();
   }
   hand("release");
-  dirty = true;
 }
 
 function placeOf(pane: Pane, event: PointerEvent): [number, number] {
@@ -174,33 +174,41 @@ function scales() {
   const most = (some: ArrayLike<number>, least: number) => Array.from(some).reduce((a, b) => Math.max(a, b), least);
   const axes = (plot.known ??= { low: 0, high: LIVE.axes[0], bottom: 0, top: LIVE.axes[1] });
   for (const pane of panes) {
-    run.tops.chains = Math.max(run.tops.chains, roundUp(most(pane.shown.bearing, 0), FINER));
     const [stroke, force] = [pane.row("stroke"), pane.row("resisting")];
     const wider = [Math.min(axes.low, -roundUp(-stroke)), Math.max(axes.high, roundUp(stroke, FINER))];
     const higher = [Math.min(axes.bottom, -roundUp(-force)), Math.max(axes.top, roundUp(force, FINER))];
     const [low, high] = [stroke < axes.low ? wider[0] : axes.low, stroke > axes.high ? wider[1] : axes.high];
     const [bottom, top] = [force < axes.bottom ? higher[0] : axes.bottom, force > axes.top ? higher[1] : axes.top];
+    const chains = Math.max(run.tops.chains, roundUp(most(pane.shown.bearing, 0), FINER));
+    if (chains !== run.tops.chains) dirty = true;
+    run.tops.chains = chains;
     if (low !== axes.low || high !== axes.high || bottom !== axes.bottom || top !== axes.top) plot.key = "";
     Object.assign(axes, { low, high, bottom, top });
   }
-  run.tops.hand = Math.max(run.limit ?? 0, axes.top);
+  for (const pane of panes) run.tops.hand = Math.max(run.tops.hand, roundUp(most([pane.row("hand_x"), pane.row("hand_y")].map(Math.abs), 0), FINER));
 }
 
 function picture() {
   requestAnimationFrame(picture);
   pictures.count++;
   conductor.turn();
-  if (!dirty) return;
-  dirty = false;
+  if (!dirty && panes.every((pane) => !pane.fresh)) return;
   for (const each of LIVE.views) if (each.valued) each.top = topOf(each, panes.map((pane) => pane.shown));
-  for (const pane of panes) pane.draw(look());
+  for (const pane of panes) if (dirty || pane.fresh) pane.draw(look()); // one that is locked stands still
   plot.draw(0, look());
+  dirty = false;
 }
 
 let said = 0;
+let begun = 0;
+// Increments do not wait for pictures: where a computer draws slowly, some are not seen.
 function finished() {
+  const wait = begun + PACE - performance.now();
+  setTimeout(() => {
+    begun = performance.now();
+    conductor.turn();
+  }, Math.max(wait, 0));
   scales();
-  dirty = true;
   if (state.script && panes.every((pane) => pane.count("script") < 0) && conductor.turns > 1) {
     state.script = false;
     showButtons();
@@ -279,7 +287,7 @@ function makeSliders() {
 function limits() {
   const slider = LIVE.sliders.find((each) => each.name === "hand_strength");
   const value = values.get("hand_strength") ?? Infinity;
-  run.limit = slider && value < slider.most ? value : null;
+  run.limit = LIVE.plotsHand && slider && value < slider.most ? value : null;
   if (plot) plot.key = "";
   dirty = true;
 }

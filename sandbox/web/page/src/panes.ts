@@ -21,6 +21,7 @@ export class Pane {
   readonly shown: PlayerPane;
   seen: Seen | null = null;
   camera: PlayerCamera = { k: 1, x: 0, y: 0 };
+  fresh = true; // is there something new to be drawn?
   target: [number, number] | null = null; // where the hand wants the body [R]
   private readonly name = element("strong");
   private readonly value = element("span", "value");
@@ -92,6 +93,7 @@ export class Pane {
 
   // The handle, where it is and where it is wanted.
   hold() {
+    this.fresh = true;
     if (!this.seen) return;
     const { body, axis } = this.live.handle;
     const [x, y] = this.seen.places.subarray(body * this.live.layout.columns);
@@ -102,6 +104,7 @@ export class Pane {
 
   draw(look: PlayerLook) {
     const { canvas } = this;
+    this.fresh = false;
     new Scenery(canvas.getContext("2d")!, this.shown, 0, this.camera, look).draw(canvas.width, canvas.height);
     this.tell();
   }
@@ -110,7 +113,7 @@ export class Pane {
     const reason = this.live.reasons[this.count("reason")];
     setText(this.name, say(this.shown.title));
     setText(this.value, [this.forceSaid(), this.outSaid()].filter(Boolean).join(" · "));
-    const residual = word("force_error", { error: `${number(100 * this.row("residual"), 1)} %` });
+    const residual = word("force_error", { error: `${short(Number((100 * this.row("residual")).toPrecision(2)))} %` });
     setText(this.said, this.seen ? `${say(reason.text)} · ${residual}` : word("settling"));
     this.lamp.className = `lamp ${["good", "working", "bad"][this.seen ? reason.level : 1]}`;
     setText(this.foot, this.locked ? word("event_locked") : "");
