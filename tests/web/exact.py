@@ -1,7 +1,7 @@
 """A scene on the desk without fast math, by the session and by the page's kernels, in a process of its own.
 
-``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE …``: writes the blocks of memory as they are laid out, and
-after each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
+``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE … [from=BLOCKS.npz]``: writes the blocks of memory as they
+are laid out, and after each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
 """
 
 from __future__ import annotations
@@ -38,13 +38,18 @@ def main() -> None:
     from sandbox.session.run import Run
     from sandbox.web.increment import course
     from sandbox.web.increment.memory import COUNTS, ROW, Kept
-    from sandbox.web.laid_out import laid_out, part, state_hash
+    from sandbox.web.laid_out import laid_out, packing_in, part, state_hash
     from scenes import registry
 
     out, name, kind, seed, steps, *given = sys.argv[1:]
     scene = registry.get(name)
-    settings = scene.settings(dict(pair.split("=") for pair in given))
+    named = dict(pair.split("=", 1) for pair in given)
+    begun = named.pop("from", None)  # fast math packs grains otherwise in the last bits
+    settings = scene.settings(named)
     setup = scene.build(settings, kind, int(seed))
+    if begun is not None:
+        with np.load(begun) as numbers:
+            setup.packing = packing_in((numbers["ints"], numbers["floats"]))
     blocks = laid_out(scene, setup, settings)
     first = tuple(block.copy() for block in blocks)
     kept = Kept(*blocks)

@@ -20,10 +20,13 @@ import pytest
 
 from core.errors import InputError
 from sandbox.web import building
+from sandbox.web.host import Host
+from sandbox.web.increment import course
 from sandbox.web.increment.memory import COUNTS
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
 from scenes import registry
+from tests.web.exact import commands
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -52,18 +55,20 @@ def missing(*modules: str) -> list[str]:
     return [name for name in modules if importlib.util.find_spec(name) is None]
 
 
+def run_exactly(run: Run, folder: Path, *more: str) -> dict[str, Any]:
+    """What the session and the kernels say on the desk, both without fast math."""
+    (scene, kind), out = run, folder / "run.npz"
+    settings = [f"{name}={value}" for name, value in building.SCENES[scene].items()]
+    command = [sys.executable, "-m", "tests.web.exact", str(out), scene, kind, "1", str(RUNS[run])]
+    subprocess.run([*command, *settings, *more], check=True, cwd=ROOT, timeout=1800)
+    with np.load(out) as numbers:
+        return dict(numbers)
+
+
 @pytest.fixture(scope="session")
 def exact(tmp_path_factory: pytest.TempPathFactory) -> dict[Run, dict[str, Any]]:
-    """What the session and the kernels say on the desk, both without fast math."""
-    found = {}
-    for (scene, kind), steps in RUNS.items():
-        out = tmp_path_factory.mktemp("exact") / "run.npz"
-        settings = [f"{name}={value}" for name, value in building.SCENES[scene].items()]
-        command = [sys.executable, "-m", "tests.web.exact", str(out), scene, kind, "1", str(steps)]
-        subprocess.run([*command, *settings], check=True, cwd=ROOT, timeout=1800)
-        with np.load(out) as numbers:
-            found[scene, kind] = dict(numbers)
-    return found
+    """That of all runs."""
+    return {run: run_exactly(run, tmp_path_factory.mktemp("exact")) for run in RUNS}
 
 
 @pytest.fixture(scope="session")
@@ -109,40 +114,58 @@ def test_webassembly_gives_the_bits_of_the_desk(
     exact: dict[Run, Any], program: Path, run: Run
 ) -> None:
     said = exact[run]
-    hashes, sizes = replayed(program, said)
-    assert first_differing(said["session"], hashes) == -1
-    assert sizes[-1] == sizes[len(sizes) // 2]  # memory that was needed once is used again
+    assert first_differing(said["session"], replayed(program, said)) == -1
 
 
-def replayed(program: Path, said: dict[str, Any]) -> tuple[list[str], list[int]]:
-    """The same commands to the compiled kernels: hashes, and bytes of memory, after each increment."""
-    from sandbox.web.host import Host
-    from sandbox.web.increment import course
-    from tests.web.exact import commands
-
+def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
+    """A run in compiled kernels after its first increment, and the body that is driven."""
     first: Blocks = said["ints"], said["floats"]
     host = Host(program, first)
-    driven = int(part(first, "counts", len(COUNTS))[COUNTS.driven])
     assert host.call("advance") == 1
-    hashes, sizes = [state_hash(host.blocks())], [host.size]
+    return host, int(part(first, "counts", len(COUNTS))[COUNTS.driven])
+
+
+def moved_by(host: Host, body: int, way: float) -> None:
+    """A hand takes the body and wants it so far up [R]."""
+    x, y = part(host.blocks(), "places", PLACES * (body + 1))[PLACES * body :][:2]
+    host.call("command", course.GRAB, body, 0.0, 0.0)
+    host.call("command", course.MOVE, body, float(x), float(y) + way)
+
+
+def replayed(program: Path, said: dict[str, Any]) -> list[str]:
+    """The same commands to the compiled kernels: hashes after each increment."""
+    host, driven = started(program, said)
+    hashes = [state_hash(host.blocks())]
     steps = len(said["session"]) - 1
     for step in range(steps):
         what, where = commands(steps).get(step, ("", 0.0))
         if what == "script":
             host.call("command", course.SCRIPT_ON, driven, 0.0, 0.0)
         elif what == "move":
-            x, y = part(host.blocks(), "places", PLACES * (driven + 1))[PLACES * driven :][:2]
-            host.call("command", course.GRAB, driven, 0.0, 0.0)
-            host.call("command", course.MOVE, driven, float(x), float(y) + where)
+            moved_by(host, driven, where)
         host.call("advance")
         hashes.append(state_hash(host.blocks()))
+    return hashes
+
+
+def test_kernels_need_no_more_memory_the_longer_they_run(
+    exact: dict[Run, Any], program: Path
+) -> None:
+    host, driven = started(program, exact["hopper", "auxetic"])
+    sizes = []
+    for _ in range(12):
+        for way in (-0.5, 0.5):  # the same ten increments there and back, again and again
+            moved_by(host, driven, way)
+            for _ in range(10):
+                host.call("advance")
         sizes.append(host.size)
-    return hashes, sizes
+    assert len(set(sizes[2:])) == 1, sizes
+    assert sizes[-1] < 2_000_000
 
 
 def test_what_a_page_cannot_run_is_refused() -> None:
     scene = registry.get("intruder")
-    settings = scene.settings({"grains": 20})
+    settings = scene.settings({"grains": 120})
     setup = scene.build(settings, "mixed", 1)
     with pytest.raises(InputError, match="a page runs scenes in an open box"):
         laid_out(scene, setup, settings)
@@ -215,9 +238,13 @@ def test_a_reset_is_the_start_to_the_last_bit(tried: dict[str, Any]) -> None:
     assert tried["again"] == tried["first"]
 
 
-def test_the_page_has_the_bits_of_the_desk(tried: dict[str, Any], exact: dict[Run, Any]) -> None:
-    start, driven = tried["blocks"]
-    for kind, place in (("regular", 0), ("auxetic", 2)):
-        said = exact["hopper", kind]["session"]
-        assert state_hash(blocks_of(start[place])) == said[0]
-    assert state_hash(blocks_of(driven[2])) == exact["hopper", "auxetic"]["session"][60]
+@pytest.mark.parametrize(("kind", "place"), [("regular", 0), ("auxetic", 2)])
+def test_the_page_has_the_bits_of_the_desk(
+    tried: dict[str, Any], tmp_path: Path, kind: str, place: int
+) -> None:
+    laid = blocks_of(tried["laid"][place])
+    np.savez(tmp_path / "laid.npz", ints=laid[0], floats=laid[1])
+    said = run_exactly(("hopper", kind), tmp_path, f"from={tmp_path / 'laid.npz'}")["session"]
+    start, driven = (blocks_of(some[place]) for some in tried["blocks"])
+    assert state_hash(start) == said[0]
+    assert state_hash(driven) == said[60]

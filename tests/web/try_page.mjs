@@ -27,6 +27,8 @@ const settled = () => page.waitForFunction(() => {
   const { conductor, panes } = window.sandboxLive;
   return !conductor.busy && conductor.idle && panes.every((pane) => pane.seen);
 }, undefined, { timeout: 120000 });
+const written = (ints, floats) => ({ ints: Array.from(new BigInt64Array(ints), String), floats: Array.from(new BigUint64Array(floats), String) });
+const laid = await page.evaluate(`window.sandboxLive.blocks().map(([ints, floats]) => (${written})(ints, floats))`);
 const hashes = async () => {
   const found = [];
   for (let pane = 0; pane < 3; pane++) {
@@ -92,5 +94,6 @@ console.log(JSON.stringify({
   ...{ ready, faults, rate, dragged, memory: again.map(({ memory }) => memory) },
   first: first.map(hash),
   again: again.map(hash),
+  laid,
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));

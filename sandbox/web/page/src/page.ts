@@ -358,5 +358,5 @@ async function begin() {
 }
 
 // For tests and for who is curious.
-Object.assign(window, { sandboxLive: { state, panes, pictures, get conductor() { return conductor; }, hand, reset, chooseSeed } });
+Object.assign(window, { sandboxLive: { state, panes, pictures, get conductor() { return conductor; }, hand, reset, chooseSeed, blocks } });
 begin();
