@@ -95,6 +95,8 @@ def test_everything_that_is_shown_has_a_name_and_a_place_in_the_tree(desk: Desk)
             for node in tree.nodes.values():
                 assert node.label or node.text, (code, page, node)
                 assert (node.label or node.text)[0] not in "▶⏸⏭◉○×›", (code, page, node)
+                said = node.label.removesuffix(".").lower()
+                assert not said or said not in node.about.lower().split("."), (code, page, node)
                 assert len(set(node.children)) == len(node.children), (page, node)
                 told |= set(node.children)
             assert told == set(tree.nodes), page

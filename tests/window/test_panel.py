@@ -15,6 +15,7 @@ from sandbox.draw.widgets.controls import (
     Button,
     Choice,
     Heading,
+    Place,
     Slider,
     Stepper,
     TextField,
@@ -54,6 +55,18 @@ def helps_of_scenes(panel: Panel) -> set[str]:
     return helps
 
 
+def with_every_word(place: Place) -> Iterator[Place]:
+    """A control as it is, a slider at its ends as well, and a choice with each of its options."""
+    control = place.control
+    yield place
+    if isinstance(control, Slider):
+        for value in (control.low, control.high):
+            yield replace(place, control=replace(control, value=value))
+    elif isinstance(control, Choice):
+        for option in control.options:
+            yield replace(place, control=replace(control, value=option.value))
+
+
 @pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 3.0)], ids=str)
 def test_no_word_of_the_panel_is_cut_in_any_language(
     size: tuple[int, int], scale: float, monkeypatch: pytest.MonkeyPatch
@@ -83,7 +96,8 @@ def test_no_word_of_the_panel_is_cut_in_any_language(
             panel.tick(0.0)
             assert len(panel._places.all) > len(parameters)
             for place in panel._places.all:
-                draw_control(desk.app.stage.renderer.painter(), place, Attention())
+                for shown_place in with_every_word(place):
+                    draw_control(desk.app.stage.renderer.painter(), shown_place, Attention())
             assert cut == [], code
             if scale == 1.0:  # help, at the foot
                 type_, room = desk.app.stage.renderer.type, panel.rect.width - 2 * round(PAD)

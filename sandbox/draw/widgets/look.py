@@ -202,8 +202,15 @@ def _draw_box(
         _draw_typing(painter, _room(rect, type_), attention.typing)
         return
     _field(painter, inner, hover)
-    shown_text = type_.shortened(text, BODY, inner.width - round(16 * scale))
-    painter.text(shown_text, *inner.center, anchor="centre")
+    _middle(painter, text, inner, round(16 * scale))
+
+
+def _middle(painter: Painter, text: str, rect: pygame.Rect, least: int) -> None:
+    """A text in the middle, smaller rather than cut; beside it stay so many pixels, or half of them where it is small."""
+    type_ = painter.type
+    size = type_.fitting(text, BODY, rect.width - least)
+    room = rect.width - (least if size == BODY else least // 2)
+    painter.text(type_.shortened(text, size, room), *rect.center, size=size, anchor="centre")
 
 
 def _room(box: pygame.Rect, type_: Type) -> pygame.Rect:
@@ -282,8 +289,7 @@ def _draw_choice(painter: Painter, choice: Choice, parts: Parts, hover: bool) ->
     if parts.arrows is not None:
         _draw_arrows(painter, parts, "‹›", hover)
         title = next((o.title for o in choice.options if o.value == choice.value), choice.value)
-        text = type_.shortened(title, BODY, parts.box.width - round(10 * scale))
-        painter.text(text, *parts.box.center, anchor="centre")
+        _middle(painter, title, parts.box, round(10 * scale))
         return
     whole = _whole(parts.options)
     _field(painter, whole, hover)

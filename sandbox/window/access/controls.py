@@ -60,11 +60,12 @@ def _node(control: Simple, made: Callable[..., Node], name: str, use: Use, go: G
         case Button(enabled=enabled):
             does = focus | {"CLICK": lambda _: use(name, True)} if enabled else {}
             title = control.spoken or control.title
+            about = _more(about, title)
             return made("BUTTON", title, about=about, on=control.on, enabled=enabled, does=does)
         case TextField():
             does = focus | {"SET_VALUE": lambda value: use(name, str(value))}
             title = control.title or words.first_sentence(about)
-            return made("TEXT_INPUT", title, control.text, about, does=does)
+            return made("TEXT_INPUT", title, control.text, _more(about, title), does=does)
         case Heading(title=title, open=is_open):
 
             def fold(wanted: bool) -> None:
@@ -84,6 +85,13 @@ def _node(control: Simple, made: Callable[..., Node], name: str, use: Use, go: G
         case Note(text=text):
             return made("LABEL", text=text)
     return made("LABEL")
+
+
+def _more(about: str, title: str) -> str:
+    """What a help says that is not in the name already: both are heard, one after the other."""
+    bare = title.removesuffix(".")
+    again = about.lower() == bare.lower() or about.lower().startswith(f"{bare}.".lower())
+    return about[len(bare) + 1 :].lstrip() if again else about
 
 
 def _slider(slider: Slider, made: Callable[..., Node], focus: Mapping[str, Do], use: Use) -> Node:
