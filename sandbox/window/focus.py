@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import pygame
@@ -41,7 +42,6 @@ class Focus(Silent):
         self._index = 0
         self._held: pygame.event.Event | None = None
         self._due = 0.0
-        self._now = 0.0
 
     @property
     def on_canvas(self) -> bool:
@@ -101,13 +101,14 @@ class Focus(Silent):
             repeats = event.key in REPEATING or sign_of(event).lower() in REPEATING_SIGNS
             if event is not self._held:
                 self._held = event if repeats else None
-                self._due = self._now + FIRST_REPEAT
+                self._due = math.nan  # counted from the next picture: the latest may be long ago
         elif event.type in (pygame.KEYUP, pygame.WINDOWFOCUSLOST, pygame.MOUSEBUTTONDOWN):
             self._held = None
 
     def tick(self, now: float) -> bool:
         """A key that is held counts again."""
-        self._now = now
+        if math.isnan(self._due):
+            self._due = now + FIRST_REPEAT
         if self._held is None or now < self._due:
             return False
         if self._held.key not in REPEATING and self.busy():

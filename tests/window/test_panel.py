@@ -25,6 +25,7 @@ from sandbox.draw.widgets.look import Attention, draw_control
 from sandbox.draw.widgets.panel_frame import FOOT_LINES
 from sandbox.session.commands import Change, Command, Protocol, Reset
 from sandbox.window.display import is_fullscreen
+from sandbox.window.focus import FIRST_REPEAT, Focus
 from sandbox.window.panel.line_edit import Edit
 from sandbox.window.panel.panel import Panel
 from sandbox.window.panel.parameters import ParameterSection, Wishes
@@ -353,6 +354,19 @@ def test_sections_fold_by_keyboard(desk: Desk) -> None:
     desk.key(pygame.K_RIGHT)
     desk.app.tick()
     assert control(desk, NU) is not None
+
+
+def test_one_press_counts_once_however_long_a_picture_takes() -> None:
+    """A key is held from the picture that has seen it on."""
+    again: list[pygame.event.Event] = []
+    focus = Focus(again.append)
+    key = pygame.event.Event(pygame.KEYDOWN, key=pygame.K_TAB, mod=0, unicode="")
+    focus.tick(1.0)
+    focus.watch(key)
+    focus.tick(9.0)
+    assert again == []
+    focus.tick(9.0 + 1.1 * FIRST_REPEAT)
+    assert again == [key]
 
 
 def test_held_key_repeats(desk: Desk) -> None:
