@@ -355,6 +355,23 @@ def test_readings_are_said_where_a_run_has_come_to_rest(desk: Desk) -> None:
     assert at(10, 116.0)
 
 
+def test_what_was_said_when_it_happened_is_not_said_again_at_rest(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stage = desk.app.stage
+    speech = Speech(stage, desk.app.guide)
+    speech.begin()
+    ((frame, camera, rect),) = stage.picture.panes()
+    text = "an arch of 4 grains holds what is above"
+    event = Event("arch", 3, 0.1, 1.0, text)
+    later = replace(frame, increment=3, events=(*frame.events, event), notices=(text, "leaning"))
+    monkeypatch.setattr(stage.picture, "panes", lambda: ((later, camera, rect),))
+    assert list(speech._from_the_runs()) == [text]
+    heard = [*speech._from_the_readings(100.0), *speech._from_the_readings(110.0)]
+    assert heard[-1] == "leaning"
+    assert text not in heard
+
+
 SKETCHED = """
 format = "auxetic-sandbox lesson"
 version = 1

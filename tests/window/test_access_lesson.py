@@ -134,7 +134,7 @@ def test_no_reader_leads_a_handle_before_the_answer(desk: Desk) -> None:
     assert not [command for command in desk.session.commands if isinstance(command, Move)]
     do(desk, X, "SET_VALUE", place.value + 3.0)
     desk.until(lambda: desk.app.guide.done)
-    done = words.TOUR_DONE.format(do="Drag.")
+    done = f"{words.TOUR_DONE}: Drag."
     assert done in [node.text for node in seen(desk).nodes.values()]
 
 
@@ -147,7 +147,7 @@ def test_that_a_step_is_done_is_said(desk: Desk) -> None:
     speech = Speech(desk.app.stage, desk.app.guide)
     speech.begin()
     desk.app.guide.done = True
-    assert words.TOUR_DONE.format(do="Drag.") in list(speech.new())
+    assert words.TOUR_DONE in list(speech.new())
 
 
 @pytest.mark.parametrize("held", [True, False])

@@ -49,6 +49,7 @@ class Speech:
         self._build: tuple[str, float] = ("", 0.0)  # what is being built, and since when [s]
         self._told = ""  # what has been said of it
         self._notes: frozenset[str] = frozenset()  # that stand under the canvases
+        self._happened: set[str] = set()  # said since a run was at rest, and perhaps a note now
         self._run = Settled(REST)
         self._sketch, self._pen = Settled(REST), Settled(REST)
         self._compared = False  # has it been said how far the sketch is off?
@@ -82,7 +83,7 @@ class Speech:
         if self.guide.on:
             page = self.guide.page
             step = words.TOUR_STEP.format(step=page.step + 1, steps=page.steps)
-            done = words.TOUR_DONE.format(do=page.do) if page.done and page.do else ""
+            done = words.TOUR_DONE if page.done and page.do else ""
             card = page.title, step, page.say, page.ask, page.hint, page.do, done, page.why
         before, self._card = self._card, card
         yield from (text for text in card if text and text not in before)
@@ -107,7 +108,8 @@ class Speech:
             known = self._events.get(pane, len(frame.events))
             self._events[pane] = len(frame.events)
             for event in frame.events[known:]:
-                yield f"{name}{words.say(event.text)}"
+                self._happened.add(text := f"{name}{words.say(event.text)}")
+                yield text
 
     def _from_the_readings(self, now: float) -> Iterator[str]:
         """Force, way, and what stands under a canvas, once a run has come to rest: while it moves they would drown all else."""
@@ -120,8 +122,9 @@ class Speech:
         for frame, name in zip(frames, names_of(frames), strict=True):
             yield f"{name}{reading(self.stage, frame)}"
             notes += [f"{name}{words.say(notice)}" for notice in frame.notices]
-        yield from (note for note in notes if note not in self._notes)
+        yield from (note for note in notes if note not in self._notes | self._happened)
         self._notes = frozenset(notes)
+        self._happened.clear()
 
     def _from_the_sketch(self, now: float) -> Iterator[str]:
         """Where the pen has stopped, what has been drawn; and how far it lies from what was measured in the end."""

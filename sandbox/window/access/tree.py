@@ -181,7 +181,7 @@ class Tree:
         guide = self._parts.guide
         page = guide.page
         step = words.TOUR_STEP.format(step=page.step + 1, steps=page.steps)
-        do = words.TOUR_DONE.format(do=page.do) if page.done and page.do else page.do
+        do = f"{words.TOUR_DONE}: {page.do}" if page.done and page.do else page.do
         texts = [page.say, do, page.why]
         nodes = [label(f"tour/text/{k}", text) for k, text in enumerate(texts) if text]
         options: list[Node] = []
