@@ -17,6 +17,7 @@ _SCRIPT = """
 {manners}
 const languages = {languages};
 settle(languages[languageAsked(true, languages, "{shown}")], themeAsked(true, "dark"));
+document.documentElement.dataset.ready = "0";
 """
 
 

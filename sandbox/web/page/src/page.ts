@@ -239,6 +239,7 @@ function speak() {
   setText($("theme"), word(state.theme === "dark" ? "to_light" : "to_dark"));
   setText($("language"), run.words[(language + 1) % LIVE.languages.length].name);
   setText($("seed-label"), word("new"));
+  $("seed").setAttribute("aria-label", word("new"));
   setText($("view-label"), word("view"));
   $<HTMLSelectElement>("view").replaceChildren(...LIVE.views.map((each, k) => option(say(each.title), k, state.view)));
   $<HTMLSelectElement>("seed").replaceChildren(...LIVE.seeds.map((seed, k) => option(word("seed", { seed }), k, state.seed)));
