@@ -105,7 +105,7 @@ def draw_names(
         width = (1.6 if earlier else 2.6) * scale
         painter.polyline(ends_x, np.array([y, y]), width, colour, dash=pattern)
         x += (SWATCH + 8.0) * scale
-        shown = type_.shortened(text, SMALL, right - x, bold=not earlier)
+        shown = type_.elided(text, SMALL, right - x, bold=not earlier)
         tint = theme.soft_text if earlier else theme.text
         painter.text(shown, x, y, size=SMALL, colour=tint, bold=not earlier)
 

@@ -180,6 +180,19 @@ class Type:
                 dropped = middle
         return text[:kept].rstrip() + "…" if kept else ""
 
+    def elided(self, text: str, size: float, width: float, bold: bool = False) -> str:
+        """The text, or as much of its beginning and of its end as fits: names differ in the one or in the other."""
+        if self.width(text, size, bold) <= width:
+            return text
+        kept, dropped = 0, len(text) // 2
+        while dropped - kept > 1:
+            middle = (kept + dropped) // 2
+            if self.width(_ends(text, middle), size, bold) <= width:
+                kept = middle
+            else:
+                dropped = middle
+        return _ends(text, kept) if kept else self.shortened(text, size, width, bold)
+
     def wrapped(self, text: str, size: float, width: float, bold: bool = False) -> list[str]:
         """Lines no wider than the width, broken between words, but not within a unit; what is wider by itself is shortened."""
         parts = self._broken(text, size, width, bold)
@@ -242,3 +255,8 @@ class Type:
         else:
             self._cache.move_to_end(key)
         return found
+
+
+def _ends(text: str, count: int) -> str:
+    """So many signs of its beginning and of its end."""
+    return f"{text[:count].rstrip()}…{text[-count:].lstrip()}"

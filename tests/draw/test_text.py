@@ -73,6 +73,19 @@ def test_shortened_text_fits() -> None:
     assert type_.shortened(long, BODY, 2) == ""
 
 
+@pytest.mark.parametrize("width", [400.0, 150.0, 60.0, 3.0])
+def test_names_that_differ_at_their_ends_still_do(width: float) -> None:
+    type_ = Type(1.0)
+    names = [f"mixed · seed 1 · number of grains 100 · orifice {d}" for d in ("2.2", "2.5")]
+    names.append("auxetic" + names[0][5:])
+    shown = [type_.elided(name, SMALL, width) for name in names]
+    assert all(type_.width(each, SMALL) <= width for each in shown)
+    if width > 100.0:
+        assert len(set(shown)) == 3
+    if width == 400.0:
+        assert type_.elided("short", SMALL, width) == "short"
+
+
 def test_wrapped_lines_fit_and_keep_all_words() -> None:
     type_ = Type(1.0)
     lines = type_.wrapped("one two three four five six seven", BODY, 90)

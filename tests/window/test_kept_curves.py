@@ -10,7 +10,8 @@ import numpy as np
 
 from sandbox.files.table import write_csv
 from sandbox.session.frame import Frame
-from sandbox.window.solvers.kept_curves import MOST, Curves, CurveTable
+from sandbox.window.solvers.kept_curves import MOST, Curves, CurveTable, automatic_name
+from sandbox.words import language
 from tests.draw.frames import curve, intruder_frame
 
 
@@ -33,6 +34,12 @@ def test_a_name_says_what_is_otherwise() -> None:
     assert names[0] == "mixed · seed 1"
     assert names[1].startswith("auxetic · seed 1 · ")
     assert names[1].endswith("−0.5")
+
+
+def test_a_name_has_the_numbers_of_its_language() -> None:
+    with language.speaking("de"):
+        name = automatic_name(frame(auxetic_poisson_ratio=-0.5))
+    assert name.endswith("−0,5")
 
 
 def test_what_is_no_curve_is_not_kept() -> None:

@@ -11,6 +11,7 @@ from core.arrays import Floats
 from sandbox.session.frame import Frame
 from sandbox.session.history import Event
 from sandbox.words import words
+from sandbox.words.language import decimal_sign
 from scenes import registry
 
 MOST = 12  # of a scene; then the oldest goes
@@ -129,7 +130,8 @@ def automatic_name(frame: Frame) -> str:
     for name, value in frame.settings.items():
         if name in defaults and value != defaults[name]:
             shown = f"{value:g}" if isinstance(value, float) else str(value)
-            parts.append(f"{words.parameter_name(name)} {shown}".replace("-", "−"))
+            shown = shown.replace("-", "−").replace(".", decimal_sign())
+            parts.append(f"{words.parameter_name(name)} {shown}")
     return " · ".join(parts)[:LONGEST]
 
 
