@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
 import html
 from collections.abc import Sequence
 
 from sandbox import __version__
+from sandbox.draw.pages.thumbnail import path_of
+from sandbox.draw.theme import THEMES
 from sandbox.player.pieces import asset, colours, filled, marked, policy, spoken
 from sandbox.web.toolchain import PAGE
 from sandbox.words import language, words
@@ -46,7 +49,14 @@ def _card(name: str, shown: str) -> str:
         title, question = html.escape(words.title(name)), html.escape(words.question(name))
         return f"<strong>{title}</strong><p>{question}</p>"
 
-    return f'<a href="{name}.html" data-own>{marked(told, shown)}</a>'
+    pictures = "".join(_picture(name, theme) for theme in THEMES)
+    return f'<a href="{name}.html" data-own>{pictures}{marked(told, shown)}</a>'
+
+
+def _picture(name: str, theme: str) -> str:
+    """The small picture of the desk's menu, seen in that theme."""
+    data = base64.b64encode(path_of(name, theme).read_bytes()).decode("ascii")
+    return f'<img class="for-{theme}" alt="" width="96" height="96" src="data:image/png;base64,{data}">'
 
 
 def way_back(shown: str) -> str:

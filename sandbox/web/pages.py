@@ -28,6 +28,8 @@ DRAWING = ("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "pl
 SHOWN = ("kind", "skin", "shape", "area", "chains")  # what follows from shapes and forces alone
 # The window's words that the page says too.
 SAID = ("force_error", "settling", "grains_out", "hand_limit", "seed")
+# Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
+STEPS = {"single_grain": (0, 1, 2)}
 REASONS = (
     *("converged", "budget", "not finite", "collapsed", "budget"),
     *("iteration limit", "sunk"),
@@ -112,6 +114,7 @@ def _tour(scene: Scene, shown: str) -> str:
     steps = tours.steps(scene.name)
     if not steps:
         return ""
+    steps = tuple(steps[k] for k in STEPS.get(scene.name, range(len(steps))))
 
     def told() -> str:
         return "".join(

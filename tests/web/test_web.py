@@ -19,12 +19,15 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from sandbox.lessons import tours
 from sandbox.web import building
 from sandbox.web.host import Host
 from sandbox.web.increment import course
 from sandbox.web.increment.memory import COUNTS
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
+from sandbox.web.menu import menu
+from sandbox.web.pages import SLIDES, STEPS
 from scenes import registry
 from tests.web.exact import commands
 
@@ -171,6 +174,27 @@ def test_what_a_page_cannot_run_is_refused() -> None:
         laid_out(scene, setup, settings)
     with pytest.raises(InputError, match="there is no page of intruder: choose hopper, "):
         building.scene_named("intruder")
+
+
+def test_the_menu_has_pictures_for_both_themes() -> None:
+    text = menu(list(building.SCENES))
+    for theme in ("dark", "light"):
+        assert text.count(f'class="for-{theme}"') == len(building.SCENES)
+    assert not re.search(r'src="(?!data:)', text)
+    assert len(text) < building.SINGLE
+
+
+def test_a_tour_on_a_page_asks_for_nothing_that_cannot_be_done_there() -> None:
+    on_a_page = {slide.name for slide in SLIDES}
+    for name, settings in building.SCENES.items():
+        for k in STEPS.get(name, range(len(tours.steps(name)))):
+            asked = {
+                key: value
+                for key, value in tours.steps(name)[k].settings.items()
+                if key not in on_a_page and value != settings.get(key)
+            }
+            first = k == 0  # which says how the scene is set up on the desk
+            assert not asked or first, f"{name}, step {k}: {asked}"
 
 
 def test_the_page_computes_no_forces() -> None:

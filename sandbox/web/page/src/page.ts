@@ -155,6 +155,7 @@ function arrange() {
     if (k > best * 1.02) [best, columns] = [k, count];
   }
   stage.style.setProperty("--columns", String(columns));
+  stage.dataset.columns = String(columns);
   stage.style.setProperty("--lines", "1");
   stage.style.setProperty("--cell", scrolls ? `${Math.round(Math.max(best * tallest + 20, 100))}px` : "auto");
   const ratio = devicePixelRatio || 1;

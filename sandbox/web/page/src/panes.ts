@@ -113,8 +113,9 @@ export class Pane {
     const reason = this.live.reasons[this.count("reason")];
     setText(this.name, say(this.shown.title));
     setText(this.value, [this.forceSaid(), this.outSaid()].filter(Boolean).join(" · "));
-    const residual = word("force_error", { error: `${short(Number((100 * this.row("residual")).toPrecision(2)))} %` });
-    setText(this.said, this.seen ? `${say(reason.text)} · ${residual}` : word("settling"));
+    const balance = word("force_error", { error: `${short(Number((100 * this.row("residual")).toPrecision(2)))} %` });
+    // That it has settled is said by how well; there is no room for both beside other packings.
+    setText(this.said, !this.seen ? word("settling") : reason.level ? say(reason.text) : balance);
     this.lamp.className = `lamp ${["good", "working", "bad"][this.seen ? reason.level : 1]}`;
     setText(this.foot, this.locked ? word("event_locked") : "");
     this.canvas.setAttribute("aria-label", this.standing());
