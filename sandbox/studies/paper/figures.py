@@ -61,7 +61,8 @@ def _draw_line(axes: Any, line: Line) -> None:
     colour = f"#{COLOURS[line.kind]:06X}"
     style = {"color": colour, "label": line.label or None}
     if line.points:
-        style |= {"linestyle": "none", "marker": MARKS[line.kind]}
+        inside = "none" if line.dashed else colour
+        style |= {"linestyle": "none", "marker": MARKS[line.kind], "markerfacecolor": inside}
     else:
         style |= {"linestyle": "--" if line.dashed else "-"}
     if line.spread is None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from core.arrays import Floats
 from sandbox.studies.paper.claims import Line, Panel, over_seeds, where
-from sandbox.studies.paper.conditions import colour, label, lambdas, of_lam
+from sandbox.studies.paper.conditions import colour, dashed, label, lambdas, of_lam
 from sandbox.studies.paper.runs import Result
 from sandbox.studies.paper.shear.cell import POSITIVE, judged, pressure
 from sandbox.studies.paper.shear.confinement import Value
@@ -39,10 +39,20 @@ def against_confinement(results: Sequence[Result], value: Value, name: str) -> l
         means = np.array([np.mean(v) for v in values])
         spreads = np.array([np.std(v) for v in values])
         volume.append(
-            Line(label(lam), colour(lam), np.array(fractions), means, spreads, points=True)
+            Line(
+                label(lam),
+                colour(lam),
+                np.array(fractions),
+                means,
+                spreads,
+                points=True,
+                dashed=dashed(lam),
+            )
         )
         place, mean, spread = against_pressure(results, lam, value)
-        force.append(Line(label(lam), colour(lam), place, mean, spread, points=True))
+        force.append(
+            Line(label(lam), colour(lam), place, mean, spread, points=True, dashed=dashed(lam))
+        )
     return [
         Panel("At equal volume", "packing fraction", name, tuple(volume)),
         Panel("At equal pressure", "normal stress P [k]", name, tuple(force), log_x=True),

@@ -27,6 +27,7 @@ from sandbox.studies.paper.conditions import (
     NEUTRAL,
     REGULAR,
     colour,
+    dashed,
     label,
     lambdas,
     of_lam,
@@ -115,10 +116,17 @@ def yield_panels(results: Sequence[Result]) -> list[Panel]:
         mine = where(of_lam(rows, lam), packing_fraction=densest)
         if mine:
             first = min(mine, key=lambda result: result.request.seed)
-            line = Line(label(lam), colour(lam), first.column("stroke"), first.column("force"))
+            columns = first.column("stroke"), first.column("force")
+            line = Line(label(lam), colour(lam), *columns, dashed=dashed(lam))
             curves.append(line)
         ratios.append(
-            Line(label(lam), colour(lam), *against_pressure(rows, lam, friction), points=True)
+            Line(
+                label(lam),
+                colour(lam),
+                *against_pressure(rows, lam, friction),
+                points=True,
+                dashed=dashed(lam),
+            )
         )
     return [
         *against_confinement(results, yielding, "yield stress [k]"),
