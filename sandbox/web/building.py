@@ -18,6 +18,8 @@ from scenes.parameter import Value
 SCENES: dict[str, Mapping[str, Value]] = {
     "hopper": {"grains": 160, "width": 18.0},
     "biaxial_press": {"grains": 160},
+    "gravity_hopper": {"grains": 160, "width": 18.0},
+    "intruder": {"grains": 250, "intruder_radius": 4.0},
     "grain_row": {},
     "single_grain": {},
 }

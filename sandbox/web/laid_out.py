@@ -13,18 +13,25 @@ from core.arrays import Floats
 from core.errors import InputError
 from core.friction import Friction
 from core.packing import Packing
-from core.rigid import SAME_POINT
+from core.rigid import SAME_POINT, RigidBody
 from core.rigid_contacts import EDGE, VERTEX
 from sandbox.web.increment import curve
 from sandbox.web.increment.memory import COUNTS, PART, ROW, SIZES, Sizes, blank
 from sandbox.web.increment.systems import PLACES, TURN
+from scenes.gravity_hopper import REST, TREMBLE
 from scenes.scene import Scene, Setup, Values
 
 Indices = NDArray[np.int64]
 Blocks = tuple[Indices, Floats]
 ROOM = 8  # contacts a grain, and a few more: far above what any packing has
-CURVES = {"grain_row": curve.ROW_OF_GRAINS, "biaxial_press": curve.PRESS}
+CURVES = {
+    "grain_row": curve.ROW_OF_GRAINS,
+    "biaxial_press": curve.PRESS,
+    "gravity_hopper": curve.GRAINS_OUT,
+}
+REPEATED = {"gravity_hopper": REST + TREMBLE}  # a script that begins again after so many increments
 PART_NAMES = PART._asdict()
+AT_REST = 0.01  # of the fall of a free grain, as in sandbox.session.run: grains that move less have come to rest
 
 
 def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
@@ -38,7 +45,7 @@ def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
 def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     """A run of what was built, before its first increment.
 
-    Raises InputError for what a page cannot run: a periodic box, gravity, and bodies that are dragged anywhere.
+    Raises InputError for what a page cannot run: a periodic box, bodies that turn, and any but discs that are dragged anywhere.
     """
     _check(scene, setup)
     packing, world = setup.packing, setup.world
@@ -80,6 +87,8 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
             *(solver.step, solver.tolerance, solver.force_floor, solver.skin),
             *(float(solver.max_iterations), solver.hand_strength),
             0.0 if friction is None else friction.coefficient,
+            *(setup.gravity or (0.0, 0.0)),
+            setup.drag,
         ],
     )
     row, counts = part(blocks, "row", len(ROW)), part(blocks, "counts", len(COUNTS))
@@ -89,6 +98,10 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
         row[ROW.outlet], row[ROW.beside] = setup.outlet.y, setup.outlet.beside
     counts[COUNTS.script], counts[COUNTS.driven] = -1, world.index(handle.body)
     counts[COUNTS.curve] = CURVES.get(scene.name, curve.FORCE)
+    counts[COUNTS.repeats] = scene.name in REPEATED
+    row[ROW.rest] = math.inf
+    if setup.gravity is not None and setup.drag > 0.0:
+        row[ROW.rest] = AT_REST * math.hypot(*setup.gravity) / setup.drag
     row[ROW.side] = math.hypot(*np.subtract(setup.outline[1], setup.outline[0]))
     return blocks
 
@@ -96,12 +109,10 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
 def _check(scene: Scene, setup: Setup) -> None:
     if setup.curve is not None and scene.name not in CURVES:
         raise InputError(f"a page cannot plot the curve of {scene.name}")
-    dragged = [body.name for body in setup.world.bodies if body.held]
-    turned = [body.name for body in setup.world.bodies if body.axis and body.angle != 0.0]
-    if setup.packing.box is not None or setup.gravity is not None or setup.drag or dragged:
-        raise InputError(
-            "a page runs scenes in an open box, without gravity, with bodies that slide"
-        )
+    other = [body for body in setup.world.bodies if body.held and not _radius(body)]
+    turned = [body for body in setup.world.bodies if body.movable and body.angle != 0.0]
+    if setup.packing.box is not None or other or (setup.drag > 0.0 and setup.gravity is None):
+        raise InputError("a page runs scenes in an open box, with bodies that slide and discs")
     if turned or setup.follow is not None or not setup.relaxes or setup.box_target is not None:
         raise InputError(
             "a page runs scenes whose bodies move straight, and all of whose grains relax"
@@ -111,8 +122,16 @@ def _check(scene: Scene, setup: Setup) -> None:
 def _places(setup: Setup) -> Floats:
     places = np.zeros((len(setup.world.bodies), PLACES))
     for row, body in zip(places, setup.world.bodies, strict=True):
-        row[:] = [*body.position, body.angle, *body.home, *(body.axis or (0.0, 0.0)), *body.travel]
+        axis = body.axis or (0.0, 0.0)
+        radius = _radius(body) if body.held else 0.0
+        row[:] = [*body.position, body.angle, *body.home, *axis, *body.travel, radius]
     return places
+
+
+def _radius(body: RigidBody) -> float:
+    """That of a body which is a disc about its own place [R]; 0 of all others."""
+    alone = len(body.discs) == 1 and not body.segments and not body.polygons
+    return body.discs[0][2] if alone and body.discs[0][:2] == (0.0, 0.0) else 0.0
 
 
 def _local(rows: Floats, owner: Indices, placement: Floats) -> Floats:
@@ -143,7 +162,8 @@ def _script(scene: Scene, setup: Setup, settings: Values) -> Floats:
     """Where the driven body goes, increment by increment (S, 2) [R]."""
     body = setup.handles[0].body
     script: list[tuple[float, float]] = []
-    while (targets := scene.drive(setup, settings, len(script))) is not None:
+    most = REPEATED.get(scene.name, math.inf)
+    while len(script) < most and (targets := scene.drive(setup, settings, len(script))) is not None:
         script.append(targets[body])
     return np.array(script).reshape(-1, 2)
 

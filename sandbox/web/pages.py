@@ -15,10 +15,10 @@ from sandbox.draw.views import VIEWS, View
 from sandbox.lessons import tours
 from sandbox.player.page import about, words_of
 from sandbox.player.pieces import as_json, asset, colours, filled, marked, policy, spoken
-from sandbox.web.increment import course
+from sandbox.web.increment import course, curve
 from sandbox.web.increment.memory import COUNTS, FIRST_INT, PART, ROW, SIZES
 from sandbox.web.increment.systems import PLACES
-from sandbox.web.laid_out import Blocks, laid_out
+from sandbox.web.laid_out import CURVES, Blocks, laid_out
 from sandbox.web.toolchain import PAGE
 from sandbox.words import language, words
 from sandbox.words.language import available, in_each, speaking
@@ -29,7 +29,7 @@ SHOWN = ("kind", "skin", "shape", "area", "chains")  # what follows from shapes 
 # The window's words that the page says too.
 SAID = ("force_error", "settling", "grains_out", "hand_limit", "seed")
 # Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
-STEPS = {"single_grain": (0, 1, 2)}
+STEPS = {"gravity_hopper": (0, 2), "intruder": (0, 1, 2), "single_grain": (0, 1, 2)}
 REASONS = (
     *("converged", "budget", "not finite", "collapsed", "budget"),
     *("iteration limit", "sunk"),
@@ -54,6 +54,9 @@ SLIDES = (
     Slide("regular_poisson_ratio", 0.0, 0.95, 0.05, ("set_ratio", 0)),
     Slide("auxetic_poisson_ratio", -0.95, -0.05, 0.05, ("set_ratio", 1)),
 )
+
+
+WEAK = Slide(HAND_STRENGTH, 0.05, 2.05, 0.05, ("set_strength",))  # of a hand that locks at less
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,7 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
                 [colours(), asset("player.css"), (PAGE / "page.css").read_text(encoding="utf-8")]
             ),
             "menu": menu,
+            "dragged": _dragged(built, code),
             "story": _tour(built.scene, code),
             "noscript": html.escape(words_of(code)["noscript"]),
             "kernels": _packed(kernels),
@@ -127,6 +131,13 @@ def _tour(scene: Scene, shown: str) -> str:
     return f'<section class="card"><h2>{title}</h2>{marked(told, shown, "ol")}</section>'
 
 
+def _dragged(built: Built, shown: str) -> str:
+    """What is otherwise than on the desk, where a disc is dragged."""
+    if not any(body.held for body in built.first.world.bodies):
+        return ""
+    return f'<p class="soft">{spoken(lambda: words.DISC_STRAIGHT, shown)}</p>'
+
+
 def _policy(script: str) -> str:
     """As of a page that plays a run, and it may compile kernels and have workers of its own making."""
     return (
@@ -147,6 +158,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
     stroke = float(built.settings.get("stroke", 1.0))
     strength = float(built.settings.get(HAND_STRENGTH, 1.0))
     own = setup.curve is not None  # then nobody knows yet how far it goes
+    counts = CURVES.get(scene.name) == curve.GRAINS_OUT
     return {
         "scene": scene.name,
         "languages": available(),
@@ -171,14 +183,19 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             for name, setup in zip(built.packings, built.setups[0], strict=True)
         ],
         "seeds": built.seeds,
+        "counts": counts,
         "plotsHand": not own,
-        "axes": [1.0, 0.01] if own or strength >= STRONGEST else [stroke, 1.2 * strength],
+        "axes": [60.0, 5.0]
+        if counts
+        else [1.0, 0.01]
+        if own or strength >= STRONGEST
+        else [stroke, 1.2 * strength],
         "handle": {
             "body": setup.world.index(handle.body),
             "label": in_each(lambda: words.say(handle.label)),
             "axis": body.axis,
         },
-        "sliders": [_slider(built, slide) for slide in SLIDES if slide.name in built.settings],
+        "sliders": sliders(scene, built.settings),
         "commands": {
             "grab": course.GRAB,
             "move": course.MOVE,
@@ -232,8 +249,15 @@ def _view(view: View) -> dict[str, Any]:
     }
 
 
-def _slider(built: Built, slide: Slide) -> dict[str, Any]:
-    parameter = next(p for p in built.scene.parameters if p.name == slide.name)
+def sliders(scene: Scene, settings: Values) -> list[dict[str, Any]]:
+    """Those of the scene, as ``live.ts`` knows them."""
+    return [_slider(scene, settings, slide) for slide in SLIDES if slide.name in settings]
+
+
+def _slider(scene: Scene, settings: Values, slide: Slide) -> dict[str, Any]:
+    if slide.name == HAND_STRENGTH and float(settings[slide.name]) < slide.least:
+        slide = WEAK
+    parameter = next(p for p in scene.parameters if p.name == slide.name)
     top = in_each(lambda: words.TOPS[slide.name]) if slide.name in words.TOPS else None
     return {
         "name": slide.name,
@@ -242,7 +266,7 @@ def _slider(built: Built, slide: Slide) -> dict[str, Any]:
         "least": slide.least,
         "most": slide.most,
         "step": slide.step,
-        "value": min(float(built.settings[slide.name]), slide.most),
+        "value": min(float(settings[slide.name]), slide.most),
         "top": top,
         "command": slide.command,
     }

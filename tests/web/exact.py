@@ -2,6 +2,9 @@
 
 ``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE … [from=BLOCKS.npz]``: writes the blocks of memory as they
 are laid out, and after each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
+
+A disc that is dragged anywhere, which pymunk moves on the desk, goes in that session where the page's rule puts it: so what is
+compared there is all of the increments but that rule.
 """
 
 from __future__ import annotations
@@ -9,12 +12,15 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from core import jit, kernel_cache
 
 Step = tuple[str, float]
+# Where the script begins in a scene: one that shakes now and then is about to.
+BEGUN = {"gravity_hopper": 238}
 
 
 def without_fast_math() -> None:
@@ -25,7 +31,7 @@ def without_fast_math() -> None:
 
 
 def commands(steps: int) -> dict[int, tuple[str, float]]:
-    """What the hand does before which increment: the script, then back, and down again as far as it goes."""
+    """What the hand does before which increment: the script, then back, and on again as far as it goes [R]."""
     return {
         0: ("script", 0.0),
         steps // 2: ("move", 0.4),
@@ -33,8 +39,41 @@ def commands(steps: int) -> dict[int, tuple[str, float]]:
     }
 
 
+def by_the_rule_of_the_page() -> None:
+    """Let no body of a session be moved by pymunk."""
+    from core.rigid import SAME_POINT, Point, RigidBody, RigidWorld
+    from core.rigid_contacts import EDGE
+    from sandbox.web.increment import bodies
+    from sandbox.web.increment.systems import PLACES, RADIUS, Bodies, X, Y
+
+    def pulled(
+        world: RigidWorld, body: RigidBody, wanted: Any, step: float
+    ) -> tuple[Point, str | None]:
+        del step
+        rows, owner = world.primitives()
+        places = np.zeros((len(world.bodies), PLACES))
+        places[:, : Y + 1] = world.placement()[:, :2]
+        here = world.index(body.name)
+        places[here, RADIUS] = body.discs[0][2]
+        local = rows.copy()
+        local[:, 1:3] -= places[owner, : Y + 1]
+        edges = rows[:, 0] == EDGE
+        local[edges, 5:7] -= places[owner[edges], : Y + 1]
+        there = Bodies(places, local, owner, np.zeros((len(rows), 2), dtype=np.int64))
+        at = np.array(body.position)
+        x, y = bodies.out_of_walls(there, here, at[X] + wanted[0], at[Y] + wanted[1])
+        moved = np.array((x, y)) - at
+        body.position = (float(x), float(y))
+        asked = float(np.hypot(*wanted))
+        short = asked > SAME_POINT and float(np.dot(moved, wanted)) < 0.5 * asked**2
+        return (float(moved[0]), float(moved[1])), "wall" if short else None
+
+    RigidWorld._pull = pulled  # type: ignore[method-assign, assignment]
+
+
 def main() -> None:
     without_fast_math()
+    by_the_rule_of_the_page()
     from sandbox.session.run import Run
     from sandbox.web.increment import course
     from sandbox.web.increment.memory import COUNTS, ROW, Kept
@@ -58,18 +97,21 @@ def main() -> None:
     session_said, kernels_said = [run.state_hash()], [state_hash(blocks)]
     left, shares, curve = [0], [1.0], []
     body = setup.handles[0].body
-    driven = setup.world.index(body)
+    driven, direction = setup.world.index(body), setup.handles[0].direction
     for step in range(int(steps)):
         what, where = commands(int(steps)).get(step, ("", 0.0))
         if what == "script":
             run.hands.follow_script(True)
             course.command(kept, course.SCRIPT_ON, driven, 0.0, 0.0)
+            run.course.script = BEGUN.get(name, 0)
+            part(blocks, "counts", len(COUNTS))[COUNTS.script] = BEGUN.get(name, 0)
         elif what == "move":
             x, y = setup.world[body].position
             run.hands.grab(body)
-            run.hands.move(body, (x, y + where))
+            x, y = x + where * abs(direction[0]), y + where * abs(direction[1])
+            run.hands.move(body, (x, y))
             course.command(kept, course.GRAB, driven, 0.0, 0.0)
-            course.command(kept, course.MOVE, driven, x, y + where)
+            course.command(kept, course.MOVE, driven, x, y)
         while not run.idle and not run.advance(1000):
             pass
         course.advance(kept)

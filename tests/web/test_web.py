@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,13 +24,13 @@ from sandbox.lessons import tours
 from sandbox.web import building
 from sandbox.web.host import Host
 from sandbox.web.increment import course
-from sandbox.web.increment.memory import COUNTS
+from sandbox.web.increment.memory import COUNTS, ROW, Kept
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
 from sandbox.web.menu import menu
-from sandbox.web.pages import SLIDES, STEPS
+from sandbox.web.pages import SLIDES, STEPS, sliders
 from scenes import registry
-from tests.web.exact import commands
+from tests.web.exact import BEGUN, commands
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -42,10 +43,13 @@ CHROMIUM = next(
     ),
     None,
 )
-# Scene and packing, and how many increments: in the hopper the script goes on until it is locked, or some have left.
+# Scene and packing, and how many increments: in the hopper the script goes on until it is locked, or some have left; that under
+# gravity is shaken, and then grains leave while nobody does anything.
 RUNS = {
     ("hopper", "regular"): 140,
     ("hopper", "auxetic"): 120,
+    ("gravity_hopper", "mixed"): 120,
+    ("intruder", "regular"): 64,
     ("biaxial_press", "mixed"): 64,
     ("grain_row", "mixed"): 64,
     ("single_grain", "mixed"): 64,
@@ -101,7 +105,7 @@ def test_a_page_for_every_scene_is_tried() -> None:
 def test_kernels_on_the_desk_do_what_the_session_does(exact: dict[Run, Any], run: Run) -> None:
     said = exact[run]
     assert first_differing(said["session"], said["kernels"]) == -1
-    assert len(set(said["session"].tolist())) > 50  # it has moved
+    assert len(set(said["session"].tolist())) > 40  # it has moved
     stroke, own_stroke, force, own_force = said["curve"].T
     np.testing.assert_allclose(own_stroke, stroke, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(own_force, force, rtol=1e-9, atol=1e-12)
@@ -110,6 +114,8 @@ def test_kernels_on_the_desk_do_what_the_session_does(exact: dict[Run, Any], run
 def test_the_runs_show_what_they_are_for(exact: dict[Run, Any]) -> None:
     assert 0.0 in exact["hopper", "regular"]["shares"]  # all the hand has moves nothing
     assert exact["hopper", "auxetic"]["left"][-1] > 5
+    assert exact["gravity_hopper", "mixed"]["left"][-1] > 5
+    assert min(exact["intruder", "regular"]["shares"]) < 1.0  # the hand is not strong enough
 
 
 @pytest.mark.parametrize("run", RUNS)
@@ -117,7 +123,7 @@ def test_webassembly_gives_the_bits_of_the_desk(
     exact: dict[Run, Any], program: Path, run: Run
 ) -> None:
     said = exact[run]
-    assert first_differing(said["session"], replayed(program, said)) == -1
+    assert first_differing(said["session"], replayed(program, said, BEGUN.get(run[0], 0))) == -1
 
 
 def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
@@ -128,14 +134,21 @@ def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
     return host, int(part(first, "counts", len(COUNTS))[COUNTS.driven])
 
 
-def moved_by(host: Host, body: int, way: float) -> None:
-    """A hand takes the body and wants it so far up [R]."""
+def moved_by(host: Host, body: int, way: float, direction: tuple[float, float]) -> None:
+    """A hand takes the body and wants it so far along its drive, up or to the right [R]."""
     x, y = part(host.blocks(), "places", PLACES * (body + 1))[PLACES * body :][:2]
+    x, y = float(x) + way * abs(direction[0]), float(y) + way * abs(direction[1])
     host.call("command", course.GRAB, body, 0.0, 0.0)
-    host.call("command", course.MOVE, body, float(x), float(y) + way)
+    host.call("command", course.MOVE, body, x, y)
 
 
-def replayed(program: Path, said: dict[str, Any]) -> list[str]:
+def direction_of(said: dict[str, Any]) -> tuple[float, float]:
+    """That of the drive, as it is at first."""
+    row = part((said["ints"], said["floats"]), "row", len(ROW))
+    return float(row[ROW.direction_x]), float(row[ROW.direction_y])
+
+
+def replayed(program: Path, said: dict[str, Any], begun: int) -> list[str]:
     """The same commands to the compiled kernels: hashes after each increment."""
     host, driven = started(program, said)
     hashes = [state_hash(host.blocks())]
@@ -144,8 +157,11 @@ def replayed(program: Path, said: dict[str, Any]) -> list[str]:
         what, where = commands(steps).get(step, ("", 0.0))
         if what == "script":
             host.call("command", course.SCRIPT_ON, driven, 0.0, 0.0)
+            blocks = host.blocks()
+            part(blocks, "counts", len(COUNTS))[COUNTS.script] = begun
+            host.write(blocks)
         elif what == "move":
-            moved_by(host, driven, where)
+            moved_by(host, driven, where, direction_of(said))
         host.call("advance")
         hashes.append(state_hash(host.blocks()))
     return hashes
@@ -158,7 +174,7 @@ def test_kernels_need_no_more_memory_the_longer_they_run(
     sizes = []
     for _ in range(12):
         for way in (-0.5, 0.5):  # the same ten increments there and back, again and again
-            moved_by(host, driven, way)
+            moved_by(host, driven, way, (0.0, 1.0))
             for _ in range(10):
                 host.call("advance")
         sizes.append(host.size)
@@ -167,13 +183,40 @@ def test_kernels_need_no_more_memory_the_longer_they_run(
 
 
 def test_what_a_page_cannot_run_is_refused() -> None:
-    scene = registry.get("intruder")
-    settings = scene.settings({"grains": 120})
+    scene = registry.get("biaxial_periodic")
+    settings = scene.settings({"grains": 100})
     setup = scene.build(settings, "mixed", 1)
     with pytest.raises(InputError, match="a page runs scenes in an open box"):
-        laid_out(scene, setup, settings)
-    with pytest.raises(InputError, match="there is no page of intruder: choose hopper, "):
-        building.scene_named("intruder")
+        laid_out(scene, replace(setup, curve=None), settings)
+    with pytest.raises(InputError, match="there is no page of couette: choose hopper, "):
+        building.scene_named("couette")
+
+
+def test_a_disc_that_is_dragged_stays_out_of_walls_and_slides_along_them() -> None:
+    scene = registry.get("intruder")
+    settings = scene.settings({"grains": 60, "intruder_radius": 2.0})
+    setup = scene.build(settings, "mixed", 1)
+    setup.packing = setup.packing.select(np.zeros(len(setup.packing), dtype=np.bool_))
+    blocks = laid_out(scene, setup, settings)
+    kept, driven = Kept(*blocks), setup.world.index("intruder")
+    course.advance(kept)
+    right, top = setup.outline[2]
+    x = setup.world["intruder"].position[0]
+    course.command(kept, course.GRAB, driven, 0.0, 0.0)
+    course.command(kept, course.MOVE, driven, x, top + 30.0)  # through the wall
+    count = 0
+    while course.advance(kept):
+        count += 1
+        assert count < 1000
+    places = part(blocks, "places", PLACES * (driven + 1))[PLACES * driven :]
+    np.testing.assert_allclose(places[:2], (x, top - 2.0), atol=1e-9)
+    course.command(
+        kept, course.MOVE, driven, right + 30.0, top + 30.0
+    )  # and along it, into the corner
+    while course.advance(kept):
+        count += 1
+        assert count < 2000
+    np.testing.assert_allclose(places[:2], (right - 2.0, top - 2.0), atol=1e-9)
 
 
 def test_the_menu_has_pictures_for_both_themes() -> None:
@@ -182,6 +225,15 @@ def test_the_menu_has_pictures_for_both_themes() -> None:
         assert text.count(f'class="for-{theme}"') == len(building.SCENES)
     assert not re.search(r'src="(?!data:)', text)
     assert len(text) < building.SINGLE
+
+
+def test_every_slider_begins_where_the_scene_does() -> None:
+    for name, changed in building.SCENES.items():
+        scene = registry.get(name)
+        settings = scene.settings(dict(changed))
+        for slide in sliders(scene, settings):
+            value = min(float(settings[slide["name"]]), slide["most"])
+            assert slide["least"] <= slide["value"] == value, f"{name}: {slide['name']}"
 
 
 def test_a_tour_on_a_page_asks_for_nothing_that_cannot_be_done_there() -> None:

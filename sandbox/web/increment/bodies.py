@@ -1,6 +1,7 @@
-"""Bodies that slide: ``core.rigid.RigidWorld.advance`` and ``core.tries.Tries.move_bodies`` as kernels.
+"""Bodies that a hand moves: ``core.rigid.RigidWorld.advance`` and ``core.tries.Tries.move_bodies`` as kernels.
 
-Bodies that a person has drawn are not there; a body that is dragged anywhere is moved by pymunk on the desk, and by nothing here.
+Bodies that a person has drawn are not there. A disc that is dragged anywhere, which pymunk moves on the desk, goes straight to
+where it is wanted here, and as far out of walls as it would be in them.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import numpy as np
 
 from core.hand import SLACK
 from core.jit import kernel
+from core.rigid import SAME_POINT
 from core.rigid_contacts import EDGE
 from sandbox.web.increment.systems import (
     ASKED,
@@ -20,6 +22,7 @@ from sandbox.web.increment.systems import (
     HOME_Y,
     LEAST,
     MOST,
+    RADIUS,
     TO_X,
     TO_Y,
     X,
@@ -27,7 +30,8 @@ from sandbox.web.increment.systems import (
 )
 
 # What stopped a body.
-NOTHING, FORCE_LIMIT, END_OF_TRAVEL = 0, 1, 2
+NOTHING, FORCE_LIMIT, END_OF_TRAVEL, WALL = range(4)
+PASSES = 4  # over all walls: in a corner a disc is in two of them
 
 
 @kernel(fastmath=False)
@@ -97,15 +101,77 @@ def slide(place, wanted, step):
 
 
 @kernel
-def advance(place, x, y, step):
+def out_of_walls(bodies, body, x, y):
+    """The place nearest to (x, y) [R] where a disc that is dragged touches the other bodies, if it is in one there."""
+    rows, reach = bodies.local, bodies.places[body, RADIUS]
+    for _ in range(PASSES):
+        for m in range(rows.shape[0]):
+            owner = bodies.owner[m]
+            if owner == body:
+                continue
+            ax, ay = rows[m, 1] + bodies.places[owner, X], rows[m, 2] + bodies.places[owner, Y]
+            if rows[m, 0] == EDGE:
+                wx = rows[m, 5] + bodies.places[owner, X] - ax
+                wy = rows[m, 6] + bodies.places[owner, Y] - ay
+                along = ((x - ax) * wx + (y - ay) * wy) / (wx * wx + wy * wy)
+                along = min(max(along, 0.0), 1.0)
+                ax += along * wx
+                ay += along * wy
+            dx, dy = x - ax, y - ay
+            distance = math.sqrt(dx * dx + dy * dy)
+            apart = reach + rows[m, 7]
+            if 0.0 < distance < apart:
+                x = ax + apart / distance * dx
+                y = ay + apart / distance * dy
+    return x, y
+
+
+@kernel
+def drag(bodies, body, x, y, step):
+    """Move a disc towards (x, y) by at most ``step`` [R], as ``slide``."""
+    place = bodies.places[body]
+    dx, dy = x - place[X], y - place[Y]
+    distance = hypotenuse(dx, dy)
+    if distance > step:
+        share = step / distance
+        dx *= share
+        dy *= share
+    to_x, to_y = out_of_walls(bodies, body, place[X] + dx, place[Y] + dy)
+    moved_x, moved_y = to_x - place[X], to_y - place[Y]
+    place[X] = to_x
+    place[Y] = to_y
+    asked = dx * dx + dy * dy
+    short = asked > SAME_POINT * SAME_POINT and moved_x * dx + moved_y * dy < 0.5 * asked
+    return moved_x, moved_y, WALL if short else NOTHING
+
+
+@kernel
+def advance(bodies, body, x, y, step):
     """Move a body towards (x, y) by at most ``step`` [R]."""
+    place = bodies.places[body]
+    if place[RADIUS] > 0.0:
+        return drag(bodies, body, x, y, step)
     wanted = (x - place[X]) * place[AXIS_X] + (y - place[Y]) * place[AXIS_Y]
     return slide(place, wanted, step)
 
 
 @kernel
+def way_to(place, x, y):
+    """How far a body is from where it is wanted [R], along its axis if it has one."""
+    dx, dy = x - place[X], y - place[Y]
+    if place[RADIUS] > 0.0:
+        return hypotenuse(dx, dy) if dx != 0.0 or dy != 0.0 else 0.0
+    return abs(dx * place[AXIS_X] + dy * place[AXIS_Y])
+
+
+@kernel
 def pull_on(place, x, y):
     """The way in which the hand pulls a body towards (x, y): a unit vector, 0 where the body is there."""
+    if place[RADIUS] > 0.0:
+        length = way_to(place, x, y)
+        if 0.0 < length < np.inf:
+            return (x - place[X]) / length, (y - place[Y]) / length
+        return 0.0, 0.0
     along = np.sign((x - place[X]) * place[AXIS_X] + (y - place[Y]) * place[AXIS_Y])
     return along * place[AXIS_X], along * place[AXIS_Y]
 
@@ -144,10 +210,10 @@ def move_bodies(bodies, wanted, reactions, share, step, strength, moved, pulled,
         if share != 0.0:
             if too_much(force, strength):
                 back_x, back_y = place[X] - step * pull_x, place[Y] - step * pull_y
-                dx, dy, _ = advance(place, back_x, back_y, step)
+                dx, dy, _ = advance(bodies, body, back_x, back_y, step)
                 stopped[body] = FORCE_LIMIT
             else:
-                dx, dy, why = advance(place, x, y, share * step)
+                dx, dy, why = advance(bodies, body, x, y, share * step)
                 stopped[body] = why
             moved[body, 0] = dx
             moved[body, 1] = dy

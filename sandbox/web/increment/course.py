@@ -1,6 +1,6 @@
 """A run under way: the hand or the script pulls, increments follow one another. What ``sandbox.session`` does, as kernels.
 
-One driven body that slides; what the session only says or counts for a person is left to the page.
+One driven body that slides or is dragged; what the session only says or counts for a person is left to the page.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.jit import kernel
-from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, rows_of
+from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, hypotenuse, rows_of, way_to
 from sandbox.web.increment.contacts import AT_X, AT_Y, FORCE, IMAGE_X, IMAGE_Y, touching
 from sandbox.web.increment.curve import plotted
 from sandbox.web.increment.increment import failed, increment
@@ -31,6 +31,7 @@ from sandbox.web.increment.systems import (
     AXIS_Y,
     HOME_X,
     HOME_Y,
+    RADIUS,
     TO_X,
     TO_Y,
     X,
@@ -121,8 +122,10 @@ def ask(kept, system):
     if counts[COUNTS.script] >= 0:
         at, body = counts[COUNTS.script], counts[COUNTS.driven]
         clear(flat)
-        if at < ints[SIZES.steps]:
-            way = floats_at(kept, PART.script, 2 * ints[SIZES.steps])
+        steps = ints[SIZES.steps]
+        if ints[SIZES.grains] > 0 if counts[COUNTS.repeats] else at < steps:
+            at %= steps
+            way = floats_at(kept, PART.script, 2 * steps)
             counts[COUNTS.script] += 1
             flat[3 * body + ASKED] = wanted[body, ASKED] = 1.0
             flat[3 * body + TO_X] = wanted[body, TO_X] = way[2 * at]
@@ -133,14 +136,13 @@ def ask(kept, system):
     found = False
     for body in range(wanted.shape[0]):
         x, y = flat[3 * body + TO_X], flat[3 * body + TO_Y]
-        place = places[body]
-        way = (x - place[X]) * place[AXIS_X] + (y - place[Y]) * place[AXIS_Y]
-        if flat[3 * body + ASKED] != 0.0 and not blocked[body] and abs(way) > ARRIVED:
+        far = way_to(places[body], x, y) > ARRIVED
+        if flat[3 * body + ASKED] != 0.0 and not blocked[body] and far:
             wanted[body, ASKED] = 1.0
             wanted[body, TO_X] = x
             wanted[body, TO_Y] = y
             found = True
-    return found
+    return found or counts[COUNTS.moving] != 0
 
 
 @kernel(allocates=True)
@@ -172,6 +174,33 @@ def tell_what_stopped(kept, wanted, made, step):
             blocked[body] = 1
     if fell:
         counts[COUNTS.script] = -1
+
+
+@kernel(allocates=True)
+def follow(kept, system, made):
+    """How far the driven body has come [R]; of one that is dragged, all its ways, and its drive goes as the hand pulls."""
+    row, driven = row_of(kept), counts_of(kept)[COUNTS.driven]
+    place = system.bodies.places[driven]
+    if place[RADIUS] == 0.0:
+        x, y = place[X] - place[HOME_X], place[Y] - place[HOME_Y]
+        return x * place[AXIS_X] + y * place[AXIS_Y]
+    if made.pulled[driven, 0] != 0.0 or made.pulled[driven, 1] != 0.0:
+        row[ROW.direction_x], row[ROW.direction_y] = made.pulled[driven]
+    dx, dy = made.moved[driven]
+    return row[ROW.stroke] + np.sqrt(dx * dx + dy * dy)
+
+
+@kernel(allocates=True)
+def go_on(kept, reason, left, at_start):
+    """With drag: whether the grains are still on their way; after the start they are."""
+    row, n = row_of(kept), kept.ints[SIZES.grains]
+    last, farthest = floats_at(kept, PART.last, 5 * n), 0.0
+    for i in range(n):
+        x, y = last[i], last[n + i]
+        farthest = max(farthest, hypotenuse(x, y) if x != 0.0 or y != 0.0 else 0.0)
+    falls = row[ROW.rest] < np.inf and not failed(reason)
+    on_the_way = falls and (at_start or left > 0 or farthest > row[ROW.rest])
+    counts_of(kept)[COUNTS.moving] = 1 if on_the_way else 0
 
 
 @kernel(allocates=True)
@@ -219,15 +248,24 @@ def advance(kept):
         fewer_grains = system_in(kept).grains
         contacts = touching(fewer_grains, rows_of(system.bodies), None)
     show(kept, contacts)
-    stroke = (place[X] - place[HOME_X]) * place[AXIS_X] + (place[Y] - place[HOME_Y]) * place[AXIS_Y]
+    go_on(kept, made.reason, left, at_start)
+    stroke = follow(kept, system, made)
     resisting = -(push[0] * row[ROW.direction_x] + push[1] * row[ROW.direction_y]) + 0.0
-    kind = counts[COUNTS.curve]
     row[ROW.stroke], row[ROW.resisting] = plotted(
-        kind, stroke, resisting, system.past.reactions, row[ROW.side]
+        counts[COUNTS.curve],
+        stroke,
+        resisting,
+        system.past.reactions,
+        row[ROW.side],
+        counts[COUNTS.rows],
+        counts[COUNTS.out] + left,
     )
-    along = push[0] * place[AXIS_X] + push[1] * place[AXIS_Y]
-    row[ROW.hand_x] = -along * place[AXIS_X]
-    row[ROW.hand_y] = -along * place[AXIS_Y]
+    ax, ay = place[AXIS_X], place[AXIS_Y]
+    if place[RADIUS] > 0.0:
+        ax, ay = row[ROW.direction_x], row[ROW.direction_y]
+    along = push[0] * ax + push[1] * ay
+    row[ROW.hand_x] = -along * ax
+    row[ROW.hand_y] = -along * ay
     row[ROW.residual] = made.residual
     row[ROW.scale] = made.scale
     row[ROW.energy] = made.energy

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core import fire
 from core.arrays import Floats
 from core.hand import MOST_TRIES, SHORTEST, SLACK
 from core.jit import kernel
@@ -45,6 +46,7 @@ class Increment(NamedTuple):
     force: float  # of the hand [k R]; nan where it pulls at nothing
     stood: bool  # nothing has changed
     moved: Floats  # (B, 2) [R]
+    pulled: Floats  # (B, 2) unit vectors, or 0
     stopped: np.ndarray  # (B,) see ``bodies``
     unbalanced: Floats  # (2, N) [k R]; 0 if it failed
     contacts: Touching
@@ -131,12 +133,17 @@ def shorter(share, tries, force, before, strength):
 @kernel(allocates=True, forceinline=False)
 def attempt(system, origin, first, moved, rows_then, max_iterations, crossed):
     """Predict and relax after the bodies have moved. Returns how it ended; the grains are as they were predicted."""
-    grains = system.grains
+    grains, settings = system.grains, system.settings
     start = grains.state.copy()
-    predict(grains, system.past, moved, first)
+    if settings.drag == 0.0:
+        predict(grains, system.past, moved, first)
     rows_now = rows_of(system.bodies)
     pass_faces(first, start, grains.state, rows_then, rows_now, crossed)
-    return relax(grains, rows_now, origin, None, system.settings, max_iterations, crossed)
+    # Without gravity and drag it adds 0 to each force and to the energy, which changes no bit, and saves code of its own.
+    weight = fire.Weight(
+        settings.gravity_x, settings.gravity_y, settings.drag, grains.state[:2].copy()
+    )
+    return relax(grains, rows_now, origin, weight, settings, max_iterations, crossed)
 
 
 @kernel(allocates=True, forceinline=False)
@@ -209,7 +216,8 @@ def increment(system, rubs):
                 grains.state[:] = start
                 bodies.places[:] = places
                 continue
-            if good and share == 0.0 and too_much(force, settings.hand_strength):
+            creeps = good and share == 0.0 and settings.drag == 0.0
+            if creeps and too_much(force, settings.hand_strength):
                 # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
                 spent += relaxed.iterations
                 grains.state[:] = start
@@ -246,6 +254,7 @@ def increment(system, rubs):
         hand_force(wanted, pulled, past.reactions),
         still,
         moved,
+        pulled,
         stopped,
         relaxed.unbalanced,
         contacts,

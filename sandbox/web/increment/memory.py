@@ -56,6 +56,8 @@ class Course(NamedTuple):
     shown: int = 9  # all contacts that are shown, those with bodies last
     driven: int = 10  # the body that the script drives and the curve is about
     curve: int = 11  # what is plotted: see ``curve``
+    moving: int = 12  # do the grains go on by themselves?
+    repeats: int = 13  # does the script begin again where it ends?
 
 
 class Row(NamedTuple):
@@ -76,9 +78,13 @@ class Row(NamedTuple):
     hand_x: int = 12  # force of the hand along the guide of its body [k R]
     hand_y: int = 13
     side: int = 14  # what the curve is about, see there [R]
+    rest: int = (
+        15  # grains that come no further in an increment are at rest [R]; ∞ where there is no drag
+    )
 
 
 COUNTS, ROW, SIZES = Course(), Row(), Sizes(*range(8))
+SETTINGS = len(Settings._fields)
 PLACE_OF_OFFSETS = 8
 
 
@@ -138,7 +144,7 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "reactions": 3 * b,
         "targets": 3 * b,
         "wanted": 3 * b,
-        "settings": len(Settings._fields),
+        "settings": SETTINGS,
         "row": len(ROW),
         "script": 2 * sizes.steps,
         "corners": 2 * sizes.corners,
@@ -213,7 +219,7 @@ def system_in(kept):
         ints[SIZES.primitives],
         ints[SIZES.room],
     )
-    settings = floats_at(kept, PART.settings, 7)
+    settings = floats_at(kept, PART.settings, SETTINGS)
     return System(
         Grains(
             floats_at(kept, PART.state, 5 * n).reshape(5, n),
@@ -236,6 +242,9 @@ def system_in(kept):
             int(settings[4]),
             settings[5],
             settings[6],
+            settings[7],
+            settings[8],
+            settings[9],
         ),
         Memory(
             floats_at(kept, PART.spin, n),

@@ -209,7 +209,7 @@ def limits_of(grains, settings, rubs):
 
 @kernel(allocates=True, forceinline=False)
 def relax(grains, primitives, origin, weight, settings, max_iterations, crossed):
-    """Relax grains among bodies at rest, in an open box; ``origin`` and ``weight`` are None where a scene has none.
+    """Relax grains among bodies at rest, in an open box; ``origin`` is None where there is no friction.
 
     ``grains`` stay as they are. ``crossed`` (N, M): which grains have gone through which edges, turned over for each time.
     """

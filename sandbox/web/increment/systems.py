@@ -12,8 +12,8 @@ from core.arrays import Floats
 Indices = NDArray[np.int64]
 
 # Columns of ``Bodies.places``.
-X, Y, TURN, HOME_X, HOME_Y, AXIS_X, AXIS_Y, LEAST, MOST = range(9)
-PLACES = 9
+X, Y, TURN, HOME_X, HOME_Y, AXIS_X, AXIS_Y, LEAST, MOST, RADIUS = range(10)
+PLACES = 10
 # Columns of ``System.wanted``.
 ASKED, TO_X, TO_Y = range(3)
 
@@ -29,16 +29,18 @@ class Grains(NamedTuple):
 
 
 class Bodies(NamedTuple):
-    """Bodies that stand fast or slide without turning, and the M primitives that they are made of."""
+    """Bodies that stand fast, slide or are dragged without turning, and the M primitives that they are made of."""
 
-    places: Floats  # (B, PLACES) where each is and was at first [R, rad], its axis or 0 if it stands fast, its travel [R]
+    # (B, PLACES) where each is and was at first [R, rad], its axis or 0, its travel [R], and the radius of a disc that is dragged
+    # anywhere [R], 0 for all others.
+    places: Floats
     local: Floats  # (M, 8) rows of ``core.rigid_contacts`` with points as seen from the body [R]
     owner: Indices  # (M,)
     joints: Indices  # (M, 2) the edges that a vertex ends, counted from 1, and below 0 where it is their start; 0: none
 
 
 class Settings(NamedTuple):
-    """``core.settings.Settings`` and the coefficient of friction, μ."""
+    """``core.settings.Settings``, the coefficient of friction, μ, and what pulls grains down and holds them back."""
 
     step: float
     tolerance: float
@@ -47,6 +49,9 @@ class Settings(NamedTuple):
     max_iterations: int
     hand_strength: float
     coefficient: float
+    gravity_x: float  # [k/R]
+    gravity_y: float
+    drag: float  # [k/R²]
 
 
 class Memory(NamedTuple):

@@ -34,9 +34,10 @@ export interface Live {
   views: PlayerView[];
   packings: Packing[];
   seeds: number[];
+  counts: boolean; // are grains plotted that have left?
   plotsHand: boolean; // is it the force of the hand that is plotted?
   axes: [number, number]; // highest stroke [R] and force [k R] that the plot begins with
-  handle: { body: number; label: string[]; axis: [number, number] };
+  handle: { body: number; label: string[]; axis: [number, number] | null };
   sliders: Slider[];
   commands: Record<string, number>; // kinds of the entry `command`
   reasons: { text: string[]; level: number }[]; // why a relaxation ended

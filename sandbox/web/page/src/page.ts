@@ -118,7 +118,9 @@ function follow(pane: Pane) {
     const at = pane.shown.handles[0]?.at;
     if (!at) return;
     const near = 24 / ((pane.camera.k * canvas.clientWidth) / canvas.width); // so many pixels
-    if (Math.abs(x - at[0]) > Math.max(LIVE.packings[pane.index].radius, near) || Math.abs(y - at[1]) > Math.max(2, near)) return;
+    const { radius } = LIVE.packings[pane.index];
+    const [beside, above] = [Math.max(radius, near), Math.max(LIVE.handle.axis ? 2 : radius, near)];
+    if (Math.abs(x - at[0]) > beside || Math.abs(y - at[1]) > above) return;
     canvas.setPointerCapture(event.pointerId);
     offset = [at[0] - x, at[1] - y];
     grab();

@@ -38,7 +38,7 @@ export class Pane {
       ...{ packing: name, title, moments: 1, count: 0, labels: [], there: [], pointed: [], squeezed: [] },
       ...{ x: none, y: none, p: none, q1: none, q2: none, rest: none, nu: none, spin: none, rubs: false, box: null },
       ...{ i: [], j: [], pairs: 0, withBodies: 0, bearing: none, dx: none, dy: none, active: [new Uint32Array()] },
-      ...{ bodies: [], handles: [], bounds, stroke: [], force: [], at: [0], counts: false, events: [] },
+      ...{ bodies: [], handles: [], bounds, stroke: [], force: [], at: [0], counts: live.counts, events: [] },
       look: { colour: packings[name].colour, dash },
     };
     this.canvas.setAttribute("role", "img");
@@ -97,7 +97,8 @@ export class Pane {
     if (!this.seen) return;
     const { body, axis } = this.live.handle;
     const [x, y] = this.seen.places.subarray(body * this.live.layout.columns);
-    const [toX, toY] = this.target ? [x + (this.target[0] - x) * Math.abs(axis[0]), y + (this.target[1] - y) * Math.abs(axis[1])] : [x, y];
+    const [alongX, alongY] = (axis ?? [1, 1]).map(Math.abs); // what has no axis goes anywhere
+    const [toX, toY] = this.target ? [x + (this.target[0] - x) * alongX, y + (this.target[1] - y) * alongY] : [x, y];
     const force = Float64Array.of(this.row("hand_x"), this.row("hand_y"));
     this.shown.handles = [{ at: Float64Array.of(x, y, toX, toY), axis, force }];
   }
@@ -112,13 +113,18 @@ export class Pane {
   private tell() {
     const reason = this.live.reasons[this.count("reason")];
     setText(this.name, say(this.shown.title));
-    setText(this.value, [this.forceSaid(), this.outSaid()].filter(Boolean).join(" · "));
+    setText(this.value, this.valuesSaid().join(" · "));
     const balance = word("force_error", { error: `${short(Number((100 * this.row("residual")).toPrecision(2)))} %` });
     // That it has settled is said by how well; there is no room for both beside other packings.
     setText(this.said, !this.seen ? word("settling") : reason.level ? say(reason.text) : balance);
     this.lamp.className = `lamp ${["good", "working", "bad"][this.seen ? reason.level : 1]}`;
     setText(this.foot, this.locked ? word("event_locked") : "");
     this.canvas.setAttribute("aria-label", this.standing());
+  }
+
+  // What the curve says last, unless it counts what is counted anyway.
+  private valuesSaid(): string[] {
+    return [this.live.counts ? "" : this.forceSaid(), this.outSaid()].filter(Boolean);
   }
 
   private forceSaid(): string {
@@ -133,8 +139,8 @@ export class Pane {
 
   // For who does not see the picture.
   standing(): string {
-    const parts = [this.forceSaid(), this.outSaid(), this.locked ? word("event_locked") : ""];
-    return `${say(this.shown.title)}: ${parts.filter(Boolean).join(", ")}`;
+    const parts = [...this.valuesSaid(), ...(this.locked ? [word("event_locked")] : [])];
+    return `${say(this.shown.title)}: ${parts.join(", ") || word("settling")}`;
   }
 }
 

@@ -58,7 +58,7 @@ interface PlayerPane {
   dy: Float64Array;
   active: Uint32Array[];
   bodies: PlayerBody[];
-  handles: { at: Float64Array; axis: [number, number]; force: Float64Array }[];
+  handles: { at: Float64Array; axis: [number, number] | null; force: Float64Array }[];
   bounds: [number, number, number, number];
   stroke: number[];
   force: number[];
