@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -279,6 +279,7 @@ def test_permutation() -> None:
 
 
 @FEW
+@example(690, 0.2141552856248463)  # an overlap of 2e-4 R
 @given(st.integers(0, 1000), st.floats(0.0, 0.3))
 def test_never_beyond_the_cap(seed: int, size: float) -> None:
     """Against normal forces that are measured on the packing, not taken from the kernel."""
@@ -288,7 +289,9 @@ def test_never_beyond_the_cap(seed: int, size: float) -> None:
     pairs = observables.grain_contacts(made.packing)
     bodies = observables.body_contacts(made.packing, made.world.primitives()[0])
     assert len(forces.i) == len(pairs.i) + len(bodies.grain)
-    assert forces.beyond_cone(MU / 1.05 * (1.0 + 1e-12), pairs, bodies) == 0.0
+    # An overlap is what is left of lengths of some R: the smaller it is, the more of it is their rounding.
+    rounding = 32.0 * np.finfo(np.float64).eps / min(*pairs.overlap, *bodies.overlap)
+    assert forces.beyond_cone(MU / 1.05 * (1.0 + rounding), pairs, bodies) == 0.0
     if forces.sliding.any():
         assert forces.beyond_cone(MU / 1.05 * (1.0 - 1e-9), pairs, bodies) > 0.0
 

@@ -109,8 +109,11 @@ class Listener:
             yield from self.all(child)
 
     def named(self, name: str) -> At | None:
-        """The node that the window calls so."""
-        return next((n for n in self.all() if self.get(n, "AccessibleId") == name), None)
+        """The node that the window calls so; None while there is none, or while a window that begins leaves a question open."""
+        try:
+            return next((n for n in self.all() if self.get(n, "AccessibleId") == name), None)
+        except TimeoutError:
+            return None
 
     def state(self, node: At, number: int) -> bool:
         low, high = self.call(node, "Accessible", "GetState")
