@@ -44,6 +44,9 @@ class Handle:
     radius: float
 
 
+AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
+
+
 @dataclass(frozen=True)
 class Outlet:
     """Grains whose centre has come below ``y`` [R] have left; ``opening`` [R] is the width of the orifice.
@@ -106,6 +109,13 @@ class Setup(System):
     )
     curve: Curve | None = None  # what is plotted, if not the force on the first handle
     reach: Callable[[Packing, str, Point], Point] | None = None  # where a handle can go, of a wish
+
+    @property
+    def rest(self) -> float:
+        """A grain that moves less than this in an increment [R] has come to rest; infinite where none goes on by itself."""
+        if self.gravity is None or self.drag == 0.0:
+            return math.inf
+        return AT_REST * math.hypot(*self.gravity) / self.drag
 
     @property
     def stroke_label(self) -> str:

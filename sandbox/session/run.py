@@ -26,7 +26,6 @@ from scenes.text import Text, message
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
-AT_REST = 0.01  # of the fall of a free grain: where there is drag, grains that move less have come to rest
 
 
 class Run:
@@ -216,10 +215,10 @@ class Run:
 
     def _goes_on(self, left: int) -> bool:
         """With drag: whether the grains are still on their way."""
-        gravity, drag = self.setup.gravity, self.setup.drag
-        if gravity is None or drag == 0.0 or self.failed:
+        rest = self.setup.rest
+        if math.isinf(rest) or self.failed:
             return False
-        return left > 0 or self.engine.farthest_move() > AT_REST * math.hypot(*gravity) / drag
+        return left > 0 or self.engine.farthest_move() > rest
 
     def _remark(self, before: Increment | None, earlier: Earlier | None, left: int) -> None:
         """Take down what the scene has to say about the newest increment, and what has begun in it."""

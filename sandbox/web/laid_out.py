@@ -31,7 +31,6 @@ CURVES = {
 }
 REPEATED = {"gravity_hopper": REST + TREMBLE}  # a script that begins again after so many increments
 PART_NAMES = PART._asdict()
-AT_REST = 0.01  # of the fall of a free grain, as in sandbox.session.run: grains that move less have come to rest
 
 
 def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
@@ -99,9 +98,7 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     counts[COUNTS.script], counts[COUNTS.driven] = -1, world.index(handle.body)
     counts[COUNTS.curve] = CURVES.get(scene.name, curve.FORCE)
     counts[COUNTS.repeats] = scene.name in REPEATED
-    row[ROW.rest] = math.inf
-    if setup.gravity is not None and setup.drag > 0.0:
-        row[ROW.rest] = AT_REST * math.hypot(*setup.gravity) / setup.drag
+    row[ROW.rest] = setup.rest
     row[ROW.side] = math.hypot(*np.subtract(setup.outline[1], setup.outline[0]))
     return blocks
 
