@@ -2,15 +2,45 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from tests.window.bus import FOCUSED, PRESSED, SLIDER, At, Listener, needs_bus, private_bus
-from tests.window.screen import Person, invisible_screen, needs_screen, play, wait_for
+from tests.window.screen import (
+    REPOSITORY,
+    Person,
+    invisible_screen,
+    needs_screen,
+    play,
+    wait_for,
+)
 
 pytestmark = [pytest.mark.end_to_end, needs_screen, needs_bus]
+
+# A window that is busy while a reader comes, and then gets the keyboard, without a pause that would let AccessKit's thread in.
+BUSY_WINDOW = """
+import sys, time
+from types import SimpleNamespace
+import pygame
+from sandbox.window.access.reader import Reader
+
+pygame.display.init()
+pygame.display.set_mode((300, 200))
+reader = Reader(SimpleNamespace(stage=None, guide=None))
+sys.setswitchinterval(60.0)
+begun = time.perf_counter()
+while time.perf_counter() < begun + 2.0:
+    pass
+for kind in (pygame.WINDOWSHOWN, pygame.WINDOWFOCUSGAINED):
+    reader.watch(pygame.event.Event(kind))
+while reader._reader is None:
+    time.sleep(0.01)
+"""
 
 
 @pytest.fixture
@@ -19,6 +49,19 @@ def person(tmp_path: Path) -> Iterator[Person]:
         person = Person(display, tmp_path)
         person.environment.update(environment)
         yield person
+
+
+def test_a_reader_that_comes_when_the_keyboard_does_stops_no_window(tmp_path: Path) -> None:
+    with private_bus(tmp_path) as environment:
+        reader = Listener(environment["DBUS_SESSION_BUS_ADDRESS"])
+        driver = {"SDL_VIDEODRIVER": "dummy", "PYTHONPATH": str(REPOSITORY)}
+        subprocess.run(
+            [sys.executable, "-c", BUSY_WINDOW],
+            env={**os.environ, **environment, **driver},
+            check=True,
+            timeout=120,
+        )
+        reader.close()
 
 
 def test_controls_are_read_and_used_and_what_happens_is_said(person: Person) -> None:

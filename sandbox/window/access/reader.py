@@ -5,10 +5,8 @@ AccessKit is an extra; without it, and as long as nobody listens, there is nothi
 
 from __future__ import annotations
 
-import math
 import queue
 import sys
-import time
 from typing import Any
 
 import pygame
@@ -24,9 +22,6 @@ except ImportError:
     accesskit = None
 
 EVERY = 0.1  # the tree is compared this often [s]
-# A reader's coming is told in a thread of AccessKit's, which holds a lock while it waits for the interpreter; who sends
-# something meanwhile holds the interpreter and waits for that lock. So nothing is sent for so long [s].
-SAFE = 0.1
 
 
 class Reader:
@@ -35,7 +30,8 @@ class Reader:
     def __init__(self, parts: Parts) -> None:
         self.parts = parts
         self._speech = Speech(parts.stage, parts.guide)
-        self._since = math.inf  # when a reader came [s]
+        self._reader: Any = None  # what the one that is there was given when it came
+        self._served: Any = None  # and the one that was told all
         self._nodes: dict[str, Node] = {}  # of the latest look
         self._sent: dict[str, Node] = {}
         self._focus = ROOT
@@ -60,34 +56,31 @@ class Reader:
         return accesskit.unix.Adapter(self._come, self._asked.put, self._leave)
 
     # -- told by AccessKit, perhaps in a thread of its own --
+    # As a reader comes, that thread holds a lock while it waits for the interpreter; whoever sends something meanwhile holds the
+    # interpreter and waits for that lock, and the window stands still for ever. So nothing is sent before ``_come`` is done.
 
     def _come(self) -> Any:
         """A reader is there: it gets the window, and soon what is in it."""
-        self._since = time.perf_counter()
         update = accesskit.TreeUpdate(self._ids[ROOT])
         update.nodes.append((self._ids[ROOT], accesskit.Node(accesskit.Role.WINDOW)))
         update.tree = accesskit.Tree(self._ids[ROOT])
         update.tree.toolkit_name = "auxetic-sandbox"
+        self._reader = update  # the last that is done here
         return update
 
     def _leave(self) -> None:
-        self._since = math.inf
+        self._reader = None
 
     # -- once a picture --
 
     def watch(self, event: pygame.event.Event) -> None:
         """The window got the keyboard, or lost it, or is elsewhere."""
-        if self._adapter is None:
+        if self._reader is None:
             return
         if event.type in (pygame.WINDOWMOVED, pygame.WINDOWSIZECHANGED, pygame.WINDOWSHOWN):
             self._tell_place()
-        if event.type not in (pygame.WINDOWFOCUSGAINED, pygame.WINDOWFOCUSLOST):
-            return
-        has_it = event.type == pygame.WINDOWFOCUSGAINED
-        if sys.platform == "darwin":
-            self._raise(self._adapter.update_view_focus_state(has_it))
-        elif sys.platform != "win32":
-            self._adapter.update_window_focus_state(has_it)
+        elif event.type in (pygame.WINDOWFOCUSGAINED, pygame.WINDOWFOCUSLOST):
+            self._tell_keyboard(event.type == pygame.WINDOWFOCUSGAINED)
 
     def _tell_place(self) -> None:
         """Where the window is on the screen, which AT-SPI does not know by itself."""
@@ -99,13 +92,21 @@ class Reader:
             place = accesskit.Rect(*map(float, (left, top, left + width, top + height)))
             self._adapter.set_root_window_bounds(place, place)
 
+    def _tell_keyboard(self, has_it: bool) -> None:
+        if sys.platform == "darwin":
+            self._raise(self._adapter.update_view_focus_state(has_it))
+        elif sys.platform != "win32":
+            self._adapter.update_window_focus_state(has_it)
+
     def tick(self, now: float) -> None:
         """Do what was asked, and tell what has changed."""
-        if self._adapter is None:
+        reader = self._reader
+        if reader is None:
             return
-        if now - self._since < SAFE:
-            self._sent, self._due = {}, now  # whoever comes gets all of it
-            return
+        if reader is not self._served:  # whoever comes gets all of it
+            self._served, self._sent, self._due = reader, {}, now
+            self._tell_place()
+            self._tell_keyboard(pygame.key.get_focused())
         while not self._asked.empty():
             self._do(self._asked.get())
             self._due = now
