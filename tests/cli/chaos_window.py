@@ -15,7 +15,7 @@ from sandbox.files.autosave import find
 from sandbox.files.log_file import read_log
 from sandbox.session.replay import replay
 from sandbox.window.film import found_films
-from tests.window.screen import TOOLS, Person, invisible_screen, play, wait_for
+from tests.window.screen import TOOLS, Person, invisible_screen, play
 
 WORDS = ("hopper", "--set", "grains=60", "--set", "width=12", "--size", "640x480")
 LOG, FILM = "run.jsonl", "sandbox-hopper-1.mp4"
@@ -34,18 +34,18 @@ def once(folder: Path, fault: str, moment: float, token: str) -> str:
         person = Person(display, folder)
         person.environment["CHAOS"] = token
         with play(person, *WORDS, "--log", LOG) as program:
-            wait_for(lambda: end_of(folder) >= 0 or program.poll() is not None, PATIENCE, "a log")
-            wait_for(person.find_window, PATIENCE, "the window")
+            person.wait_for(lambda: end_of(folder) >= 0, PATIENCE, "a log")
+            person.wait_for(person.find_window, PATIENCE, "the window")
             person.key("g")
             person.key("a")
             time.sleep(moment)
             program.send_signal(getattr(signal, fault, signal.SIGTERM))
-            _, said = program.communicate(timeout=PATIENCE)
+            code, said = person.end(PATIENCE), person.said()
     assert "Traceback" not in said, said
     if fault in CODES:
-        assert program.returncode == CODES[fault], (program.returncode, said)
+        assert code == CODES[fault], (code, said)
     else:
-        assert program.returncode in (2, 128 + signal.SIGTERM), (program.returncode, said)
+        assert code in (2, 128 + signal.SIGTERM), (code, said)
     words = [_look_at_log(folder), _look_at_autosave(folder, fault)]
     return ", ".join([*words, *_look_at_film(folder, fault)])
 

@@ -67,6 +67,7 @@ class Listener:
 
     def __init__(self, session: str) -> None:
         self.session = session
+        self.latest: list[str] = []  # names of the nodes that were found as one was last looked for
         with open_dbus_connection(session) as bus:
             launcher = DBusAddress("/org/a11y/bus", "org.a11y.Bus", "org.a11y.Status")
             bus.send_and_get_reply(
@@ -110,10 +111,15 @@ class Listener:
 
     def named(self, name: str) -> At | None:
         """The node that the window calls so; None while there is none, or while a window that begins leaves a question open."""
+        self.latest = []
         try:
-            return next((n for n in self.all() if self.get(n, "AccessibleId") == name), None)
+            for node in self.all():
+                self.latest.append(str(self.get(node, "AccessibleId")))
+                if self.latest[-1] == name:
+                    return node
         except TimeoutError:
-            return None
+            self.latest.append("no answer")
+        return None
 
     def state(self, node: At, number: int) -> bool:
         low, high = self.call(node, "Accessible", "GetState")

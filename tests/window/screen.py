@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 import pygame
@@ -58,21 +61,50 @@ def invisible_screen(width: int = 1400, height: int = 900) -> Iterator[str]:
         server.wait(10)
 
 
-def wait_for(condition: Callable[[], object], seconds: float, what: str) -> None:
-    patience = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < patience, f"waited in vain for {what}"
-        time.sleep(0.05)
-
-
 class Person:
-    """Sends keys and mouse to the one window of a screen, and looks at its screenshots."""
+    """Sends keys and mouse to the one window of a screen, looks at its screenshots, and waits for what is to be seen there."""
+
+    program: subprocess.Popen[bytes]  # that is played, and what it writes to standard error
+    errors: IO[bytes]
 
     def __init__(self, display: str, folder: Path) -> None:
         # A home of its own: nothing that an earlier program left behind is offered in the menu.
         own = {"XDG_DATA_HOME": str(folder / "data"), "XDG_CONFIG_HOME": str(folder / "config")}
         self.environment = {**os.environ, "DISPLAY": display, **own}
         self.folder = folder
+
+    def wait_for(
+        self,
+        condition: Callable[[], object],
+        seconds: float,
+        what: str,
+        seen: Callable[[], object] = str,
+    ) -> None:
+        """Says why it was in vain: that the program has ended, or where it is; what it wrote; and what was ``seen`` last."""
+        patience = time.monotonic() + seconds
+        while not condition():
+            code = self.program.poll()
+            assert code is None, f"ended with {code} before {what}: {self.said()}"
+            assert time.monotonic() < patience, f"in vain for {what}: {seen()}\n{self._stopped()}"
+            time.sleep(0.05)
+
+    def said(self) -> str:
+        """All that the program has written to standard error."""
+        self.errors.seek(0)
+        return self.errors.read().decode()
+
+    def end(self, seconds: float) -> int:
+        """The exit code, once the program has ended."""
+        try:
+            return self.program.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"in vain for the end: {self._stopped()}") from None
+
+    def _stopped(self) -> str:
+        """What the program has said, and where each of its threads was; that ends it."""
+        self.program.send_signal(signal.SIGABRT)
+        self.program.wait(10)
+        return self.said()
 
     def do(self, *words: object) -> str:
         done = subprocess.run(
@@ -81,6 +113,7 @@ class Person:
             capture_output=True,
             text=True,
             check=False,
+            timeout=60,
         )
         return done.stdout.strip()
 
@@ -99,7 +132,7 @@ class Person:
     def screenshot(self) -> NDArray[np.uint8]:
         before = set(self.folder.glob("sandbox*.png"))
         self.key("F12")
-        wait_for(lambda: set(self.folder.glob("sandbox*.png")) - before, 20, "a screenshot")
+        self.wait_for(lambda: set(self.folder.glob("sandbox*.png")) - before, 20, "a screenshot")
         (path,) = set(self.folder.glob("sandbox*.png")) - before
         return pygame.surfarray.array3d(pygame.image.load(path))  # (width, height, 3)
 
@@ -118,23 +151,26 @@ class Person:
 
 
 @contextmanager
-def play(person: Person, *words: str) -> Iterator[subprocess.Popen[str]]:
-    """The program, ended in any case."""
+def play(person: Person, *words: str) -> Iterator[subprocess.Popen[bytes]]:
+    """The program, ended in any case. What it says goes into a file: a pipe that nobody reads would stop it once it is full."""
     environment = {
         **person.environment,
         "SDL_VIDEODRIVER": "x11",
         "SDL_AUDIODRIVER": "dummy",
         "PYTHONPATH": str(REPOSITORY),
     }
-    with subprocess.Popen(
-        [sys.executable, "-m", "sandbox", "play", *words],
-        cwd=person.folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    ) as program:
+    command = [sys.executable, "-X", "faulthandler", "-m", "sandbox", "play", *words]
+    with (
+        tempfile.TemporaryFile("a+b") as person.errors,  # at its end, wherever it is read meanwhile
+        subprocess.Popen(
+            command,
+            cwd=person.folder,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=person.errors,
+        ) as person.program,
+    ):
         try:
-            yield program
+            yield person.program
         finally:
-            program.kill()
+            person.program.kill()

@@ -18,7 +18,7 @@ import pytest
 
 from sandbox.draw.theme import HAND, channels
 from tests.window.desk import Desk
-from tests.window.screen import Person, invisible_screen, needs_screen, play, wait_for
+from tests.window.screen import Person, invisible_screen, needs_screen, play
 
 pytestmark = [pytest.mark.end_to_end, pytest.mark.slow, needs_screen]
 
@@ -98,12 +98,14 @@ def test_a_lesson(person: Person, twin: Desk) -> None:
     log = person.folder / "lesson.jsonl"
     words = ["--size", f"{WIDTH}x{HEIGHT}", "--scale", "1", "--language", "en", "--log", str(log)]
     with play(person, *words) as program:
-        wait_for(person.find_window, 60, "the window")
-        wait_for(lambda: menu_is_there(person), 60, "the menu")
+        person.wait_for(person.find_window, 60, "the window")
+        person.wait_for(lambda: menu_is_there(person), 60, "the menu")
         for _ in range(presses):
             person.key("Tab")
         person.key("Return")
-        wait_for(lambda: person.knob() is not None, 240, "the hopper: the first start compiles")
+        person.wait_for(
+            lambda: person.knob() is not None, 240, "the hopper: the first start compiles"
+        )
 
         place = person.knob()
         assert place is not None
@@ -117,7 +119,7 @@ def test_a_lesson(person: Person, twin: Desk) -> None:
         time.sleep(1.0)
 
         person.do("mousemove", *control(twin, "general/compare").center, "click", 1)
-        wait_for(lambda: has_both_kinds(person), 120, "three packings side by side")
+        person.wait_for(lambda: has_both_kinds(person), 120, "three packings side by side")
 
         person.key("g")
         place = person.knob()
@@ -125,15 +127,13 @@ def test_a_lesson(person: Person, twin: Desk) -> None:
         drag(person, place, (0, 30), 2.0)
         time.sleep(1.0)
         person.key("g")
-        wait_for(lambda: list(person.folder.glob("*.mp4")), 60, "the film")
+        person.wait_for(lambda: list(person.folder.glob("*.mp4")), 60, "the film")
 
         for _ in range(5):  # what is open is closed first, then the scene, then the window
             if program.poll() is None:
                 person.key("Escape")
                 time.sleep(0.5)
-        _, errors = program.communicate(timeout=60)
-    assert program.returncode == 0, errors
-    assert errors == ""
+        assert (person.end(60), person.said()) == (0, "")
 
     (film,) = person.folder.glob("*.mp4")
     frames = imageio.mimread(film, memtest=False)

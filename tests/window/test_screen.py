@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.window.screen import Person, invisible_screen, needs_screen, play, wait_for
+from tests.window.screen import Person, invisible_screen, needs_screen, play
 
 pytestmark = [pytest.mark.end_to_end, needs_screen]
 
@@ -25,8 +25,8 @@ def person(tmp_path: Path) -> Iterator[Person]:
 
 def test_open_drag_and_quit(person: Person) -> None:
     log = person.folder / "run.jsonl"
-    with play(person, "intruder", "--set", "grains=150", "--log", str(log)) as program:
-        wait_for(person.find_window, 60, "the window")
+    with play(person, "intruder", "--set", "grains=150", "--log", str(log)):
+        person.wait_for(person.find_window, 60, "the window")
         person.key("f")  # nothing on the canvas is orange but handle and hand
         place: list[tuple[int, int]] = []
 
@@ -35,7 +35,7 @@ def test_open_drag_and_quit(person: Person) -> None:
             place.extend([found] if found else [])
             return bool(place)
 
-        wait_for(seen, 180, "the scene: the first start compiles")
+        person.wait_for(seen, 180, "the scene: the first start compiles")
         x, y = place[0]
         person.do("mousemove", x, y, "mousedown", 1)
         for step in range(1, 16):
@@ -52,9 +52,7 @@ def test_open_drag_and_quit(person: Person) -> None:
         assert not np.array_equal(menu, moved)
         person.key("Escape")  # what is still said there
         person.key("Escape")  # out
-        _, errors = program.communicate(timeout=30)
-    assert program.returncode == 0, errors
-    assert errors == ""
+        assert (person.end(30), person.said()) == (0, "")
     lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
     done = [line["command"] for line in lines if "command" in line]
     assert done[0] == "grab"
@@ -64,17 +62,15 @@ def test_open_drag_and_quit(person: Person) -> None:
 
 
 def test_menu_to_a_scene_by_keyboard(person: Person) -> None:
-    with play(person) as program:
-        wait_for(person.find_window, 60, "the window")
+    with play(person):
+        person.wait_for(person.find_window, 60, "the window")
         # The keys count once the menu is there; the splash lets them pass too.
         person.key("Right")
         person.key("Return")
-        wait_for(lambda: person.knob() is not None, 180, "the scene")
+        person.wait_for(lambda: person.knob() is not None, 180, "the scene")
         person.key("m")
         person.key("Escape")
-        _, errors = program.communicate(timeout=30)
-    assert program.returncode == 0, errors
-    assert errors == ""
+        assert (person.end(30), person.said()) == (0, "")
 
 
 # X keycodes of the keys for A and Z, by what is printed on them or stands in their place.
@@ -95,19 +91,25 @@ def test_keys_of_other_keyboards(person: Person) -> None:
         return [line["command"] for line in lines if "command" in line], max(increments, default=0)
 
     with play(person, "single_grain", "--log", str(log)) as program:
-        wait_for(person.find_window, 60, "the window")
-        wait_for(lambda: person.knob() is not None, 180, "the scene: the first start compiles")
+        person.wait_for(person.find_window, 60, "the window")
+        person.wait_for(
+            lambda: person.knob() is not None, 180, "the scene: the first start compiles"
+        )
         wanted = 0
         for keyboard, (drive, undo) in KEYBOARDS.items():
             subprocess.run(["setxkbmap", keyboard], env=person.environment, check=True)
             for keys in ((CAPS_LOCK, undo, CAPS_LOCK), (f"{CONTROL}+{undo}",)):
                 before = told()[1]
                 person.key(str(drive))
-                wait_for(lambda before=before: told()[1] > before, 20, f"the drive on {keyboard}")  # type: ignore[misc]
+                person.wait_for(
+                    lambda before=before: told()[1] > before,  # type: ignore[misc]
+                    20,
+                    f"the drive on {keyboard}",
+                )
                 for key in keys:
                     person.key(str(key))
                 wanted += 1
-                wait_for(
+                person.wait_for(
                     lambda wanted=wanted: told()[0] == ["protocol", "undo"] * wanted,  # type: ignore[misc]
                     20,
                     f"undo on {keyboard}",

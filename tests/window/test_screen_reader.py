@@ -17,7 +17,6 @@ from tests.window.screen import (
     invisible_screen,
     needs_screen,
     play,
-    wait_for,
 )
 
 pytestmark = [pytest.mark.end_to_end, needs_screen, needs_bus]
@@ -74,23 +73,23 @@ def test_controls_are_read_and_used_and_what_happens_is_said(person: Person) -> 
             found.extend(filter(None, [reader.named(name)]))
             return bool(found)
 
-        wait_for(there, 180, name)
+        person.wait_for(there, 180, name, lambda: reader.latest)
         return found[0]
 
     with reader.announcements(), play(person, "single_grain") as program:
-        wait_for(person.find_window, 60, "the window")
+        person.wait_for(person.find_window, 60, "the window")
         slider = find("grains/poisson_ratio")
         assert reader.get(slider, "Name") == "Poisson's ratio"
         assert reader.call(slider, "Accessible", "GetRole") == SLIDER
         ends = [reader.get(slider, f"{which}Value", "Value") for which in ("Minimum", "Maximum")]
         assert ends == [0.0, 0.99]
         reader.set_value(slider, 0.5)
-        wait_for(lambda: reader.get(slider, "CurrentValue", "Value") == 0.5, 20, "the value")
+        person.wait_for(lambda: reader.get(slider, "CurrentValue", "Value") == 0.5, 20, "the value")
 
         assert reader.call(slider, "Component", "GrabFocus") is True
-        wait_for(lambda: reader.state(slider, FOCUSED), 20, "the keyboard")
+        person.wait_for(lambda: reader.state(slider, FOCUSED), 20, "the keyboard")
         person.key("Right")
-        wait_for(lambda: reader.get(slider, "CurrentValue", "Value") == 0.51, 20, "one step")
+        person.wait_for(lambda: reader.get(slider, "CurrentValue", "Value") == 0.51, 20, "one step")
 
         reader.press(find("general/drive"))
         said: list[str] = []
@@ -99,12 +98,12 @@ def test_controls_are_read_and_used_and_what_happens_is_said(person: Person) -> 
             said.extend(reader.heard())
             return "scripted drive on" in said
 
-        wait_for(heard, 20, "what is said")
+        person.wait_for(heard, 20, "what is said")
 
         brush = find("general/brush")  # which stays as it is put; the drive soon comes to its end
         assert not reader.state(brush, PRESSED)
         reader.press(brush)
-        wait_for(lambda: reader.state(brush, PRESSED), 20, "the brush")
+        person.wait_for(lambda: reader.state(brush, PRESSED), 20, "the brush")
 
         reader.press(find("general/help"))
         find("help/close")
