@@ -1,13 +1,25 @@
-"""What ``list`` prints: the scenes, their packings and parameters, for people and for programs."""
+"""The command ``list``: the scenes, their packings and parameters, for people and for programs."""
 
 from __future__ import annotations
 
+import argparse
 import json
 import textwrap
 from collections.abc import Sequence
 from typing import Any
 
+from sandbox.cli.exit_codes import OK
+
 _WIDTH = 100
+
+
+def list_scenes(options: argparse.Namespace) -> int:
+    """Print the scenes and what they know."""
+    from scenes import registry
+
+    scenes = [registry.get(name) for name in registry.names()]
+    print(as_json(scenes) if options.json else as_text(scenes), flush=True)
+    return OK
 
 
 def as_text(scenes: Sequence[Any]) -> str:

@@ -1,4 +1,4 @@
-"""The command line: list, play, record, replay, sweep, bench, study, site, lesson, prepare.
+"""The command line: list, play, record, replay, sweep, bench, study, site, web, lesson, prepare.
 
 Only light modules are imported at the top: ``--help`` answers at once, and a mistake is found
 before anything is compiled.
@@ -14,9 +14,12 @@ from collections.abc import Callable, Sequence
 
 from core.errors import InputError, nearest
 from sandbox import __version__
-from sandbox.cli import arguments, streams, verbs
+from sandbox.cli import arguments, listing, publish, streams
+from sandbox.cli import bench as benching
 from sandbox.cli import lesson as lessons
+from sandbox.cli import play as playing
 from sandbox.cli import prepare as preparing
+from sandbox.cli import record as recording
 from sandbox.cli import study as studies
 from sandbox.cli import sweep as sweeps
 from sandbox.cli.arguments import Parser, argument
@@ -124,14 +127,14 @@ def parsers() -> tuple[Parser, dict[str, Parser]]:
 
 
 def _add_listing(command: Command) -> None:
-    listing = command(
-        "list", verbs.list_scenes, "Print the scenes, their packings and their parameters."
+    scenes = command(
+        "list", listing.list_scenes, "Print the scenes, their packings and their parameters."
     )
-    listing.add_argument("--json", action="store_true", help="print the same as JSON")
+    scenes.add_argument("--json", action="store_true", help="print the same as JSON")
 
 
 def _add_play(command: Command) -> None:
-    play = command("play", verbs.play, "Open a window; grab a handle with the mouse and move it.")
+    play = command("play", playing.play, "Open a window; grab a handle with the mouse and move it.")
     play.add_argument(
         "scene",
         nargs="?",
@@ -173,7 +176,7 @@ def _add_play(command: Command) -> None:
 
 def _add_record(command: Command) -> None:
     record = command(
-        "record", verbs.record, "Run a scene by itself, and write a film, a table or both."
+        "record", recording.record, "Run a scene by itself, and write a film, a table or both."
     )
     record.add_argument(
         "scene",
@@ -216,7 +219,7 @@ def _add_record(command: Command) -> None:
 
 def _add_replay(command: Command) -> None:
     replay = command(
-        "replay", verbs.replay, "Repeat a logged run; say whether it came out the same."
+        "replay", recording.replay, "Repeat a logged run; say whether it came out the same."
     )
     replay.add_argument("log", metavar="LOG.jsonl", help="a file that `play --log` has written")
     replay.add_argument("--out", metavar="FILE", help="film, animation, last frame or page")
@@ -232,7 +235,7 @@ def _add_sweep(command: Command) -> None:
 
 
 def _add_bench(command: Command) -> None:
-    bench = command("bench", verbs.bench, "Measure how fast the program is on this machine.")
+    bench = command("bench", benching.bench, "Measure how fast the program is on this machine.")
     bench.add_argument("--json", metavar="FILE.json", help="write all numbers down")
     bench.add_argument("--markdown", metavar="FILE.md", help="write the results as a table")
     bench.add_argument(
@@ -244,7 +247,7 @@ def _add_bench(command: Command) -> None:
 
 
 def _add_study(command: Command) -> None:
-    study = command("study", verbs.study, "Measure, and write tables and figures.")
+    study = command("study", studies.study, "Measure, and write tables and figures.")
     study.add_argument(
         "name",
         metavar="NAME",
@@ -296,7 +299,7 @@ def _add_prepare(command: Command) -> None:
 def _add_site(command: Command) -> None:
     site = command(
         "site",
-        verbs.site,
+        publish.site,
         "Write a gallery to publish: a page that plays each scene, its packings side by side, worksheets to print, and what "
         "was measured. Takes three minutes on two idle cores, and a minute more where the solver is compiled first.",
     )
@@ -315,7 +318,7 @@ def _add_site(command: Command) -> None:
 def _add_web(command: Command) -> None:
     web = command(
         "web",
-        verbs.web,
+        publish.web,
         "Write pages on which scenes run in any browser, with nothing to install: the same kernels, compiled for it. "
         "Needs the extra web and Node.js; the first time it compiles, for two minutes.",
     )

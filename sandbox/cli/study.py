@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 from core.errors import InputError
 from sandbox.cli.exit_codes import FAILED, INTERRUPTED, OK
@@ -179,3 +180,16 @@ OWN_OPTIONS = {
     "estimate": ("accuracy",),
     "executor": ("clogging",),
 }
+
+
+def study(options: argparse.Namespace) -> int:
+    """Carry out one of the studies."""
+    refuse_foreign_options(options)
+    try:
+        return STUDIES[options.name](options)
+    except KeyboardInterrupt:
+        # After the last run, that is: a study that is stopped earlier says how far it has come.
+        there = Path(options.out).is_dir()
+        kept = f"; what was finished is in {options.out}, the same command goes on from there"
+        print(f"stopped{kept if there else ': nothing was written'}", file=sys.stderr)
+        return INTERRUPTED

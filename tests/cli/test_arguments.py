@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import InputError
-from sandbox.cli import arguments, study, verbs
+from sandbox.cli import arguments, listing, study
 from sandbox.cli import main as cli
 
 
@@ -198,7 +198,7 @@ def test_a_full_disk_is_one_line(
     def fail(options: object) -> int:
         raise OSError(errno.ENOSPC, "No space left on device", "run.jsonl")
 
-    monkeypatch.setattr(verbs, "list_scenes", fail)
+    monkeypatch.setattr(listing, "list_scenes", fail)
     assert cli.main(["list"]) == 2
     assert capsys.readouterr().err == (
         "error: no room left on the disk for run.jsonl: free some and try again\n"

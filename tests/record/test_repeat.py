@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
-from sandbox.cli import verbs
+from sandbox.cli.report import interrupted
 from sandbox.record import record
 from sandbox.record.record import Outcome, Output
 from sandbox.session.commands import Command, Protocol, Reset, Undo
@@ -97,5 +97,5 @@ def test_a_log_that_leads_nowhere_is_told() -> None:
 def test_what_is_said_to_be_written_was(
     outcome: Outcome, film: str, table: str | None, words: str
 ) -> None:
-    said = verbs._interrupted(outcome, Output(Path(film), Path(table) if table else None))
+    said = interrupted(outcome, Output(Path(film), Path(table) if table else None))
     assert said == f"stopped after {outcome.increments} increments: {words}"
