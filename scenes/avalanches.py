@@ -13,26 +13,13 @@ from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from scenes.checks import Check, Track
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    STRONGEST,
-    Check,
-    Curve,
-    Handle,
-    Ingredients,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    hand,
-    solver,
-    solver_parameters,
-    step,
-)
+from scenes.relaxing import solver_parameters, step
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Curve, Handle, Ingredients, Scene, Setup, Values, hand, solver
 from scenes.text import Text, counted
 
 LEAST_DROP = 0.005  # of the pressure at the start: smaller falls of the stress are no avalanche

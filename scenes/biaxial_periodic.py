@@ -9,26 +9,13 @@ from core.generate import Progress, pack
 from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
+from scenes.checks import Check, Track
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    SOLVER,
-    STRONGEST,
-    Check,
-    Curve,
-    Handle,
-    Ingredients,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    hand,
-    solver,
-    step,
-)
+from scenes.relaxing import SOLVER, step
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Curve, Handle, Ingredients, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 # The pressure [k] that counts as the onset of rigidity, whatever C: how far a grain is squeezed by it is set by k.

@@ -16,24 +16,12 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.checks import Check, Track
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    SOLVER,
-    Check,
-    Curve,
-    Handle,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    friction,
-    hand,
-    solver,
-    step,
-)
+from scenes.relaxing import SOLVER, step
+from scenes.scene import Curve, Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 FLOOR = 1.6  # thickness; the ends of the lid slide into it [R]

@@ -11,29 +11,14 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
+from scenes.checks import Check, Track
 from scenes.falls import sudden_fall, who_took_part
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    SOLVER,
-    STRONGEST,
-    Check,
-    Curve,
-    Handle,
-    Ingredients,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    friction,
-    hand,
-    solver,
-    step,
-)
+from scenes.relaxing import SOLVER, step
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Curve, Handle, Ingredients, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 TOOTH = 2.0  # period of the teeth [R]

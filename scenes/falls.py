@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from core.avalanches import force_changes, weights
 from core.packing import Packing
 from core.rigid import Point
-from scenes.scene import Latest, Setup
+from scenes.remarks import Latest
+from scenes.scene import Setup
 
 # Chosen so that a scripted drive through 300 grains has one or two a grain diameter at most.
 OF_MEAN = 0.5  # of the mean size of the force so far: smaller falls are none

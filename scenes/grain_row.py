@@ -15,26 +15,12 @@ from core.generate import Progress, Recipe
 from core.packing import Packing
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
-from scenes.grains import MATERIAL
+from scenes.checks import Check, Track, below_height
+from scenes.grains import FRICTION, MATERIAL, friction
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    STRONGEST,
-    Check,
-    Curve,
-    Handle,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    below_height,
-    friction,
-    hand,
-    solver,
-)
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Curve, Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 WALL = 0.6  # thickness of floor, walls and piston [R]

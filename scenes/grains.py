@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.errors import InputError
+from core.friction import Friction
 from core.generate import SIZE_RATIO, Recipe
 from core.material import (
     DEFAULT_CONTACT_STIFFNESS,
@@ -96,6 +97,7 @@ PAPER = (
     ),
 )
 POISSON_RATIOS = ("regular_poisson_ratio", "auxetic_poisson_ratio")
+FRICTION = "Coulomb friction coefficient, between grains and with walls; 0 leaves the term out"
 STIFFNESSES = ("contact_stiffness", "softness")
 
 
@@ -170,3 +172,8 @@ def recipe(settings: Mapping[str, Value], packing: str) -> Recipe:
         small_fraction=float(settings["small_fraction"]),
         size_width=float(settings["size_width"]),
     )
+
+
+def friction(settings: Mapping[str, Value], grains: int) -> Friction | None:
+    """That of so many grains as ``settings`` call for; None without any."""
+    return Friction.of(float(settings["friction"]), grains)

@@ -17,29 +17,15 @@ from core.generate import Progress, pack
 from core.packing import Packing
 from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.checks import Check, Track
 from scenes.falls import who_took_part
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.hopper import WALL, Shape, standing_arch
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    STRONGEST,
-    Check,
-    Curve,
-    Handle,
-    Ingredients,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    friction,
-    hand,
-    solver,
-    solver_parameters,
-)
+from scenes.relaxing import solver_parameters
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Curve, Handle, Ingredients, Scene, Setup, Values, hand, solver
 from scenes.text import Text, counted
 
 DROP = 5.0  # a grain this far below the lips has left [R]

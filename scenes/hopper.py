@@ -12,28 +12,15 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
+from scenes.checks import below_height
 from scenes.falls import sudden_fall, who_took_part
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
+from scenes.outlet import Outlet
 from scenes.parameter import Parameter, round_down, round_up, whole_above
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    SOLVER,
-    Bounds,
-    Handle,
-    Holding,
-    Latest,
-    Outlet,
-    Remarks,
-    Scene,
-    Setup,
-    Values,
-    below_height,
-    friction,
-    hand,
-    solver,
-    step,
-)
+from scenes.relaxing import SOLVER, step
+from scenes.remarks import Holding, Latest, Remarks
+from scenes.scene import Bounds, Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 WALL = 0.8  # thickness; the funnel's lips are round with half of it [R]

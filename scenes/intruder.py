@@ -8,23 +8,12 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.falls import sudden_fall, who_took_part
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    Handle,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Values,
-    friction,
-    hand,
-    solver,
-    solver_parameters,
-    step,
-)
+from scenes.relaxing import solver_parameters, step
+from scenes.remarks import Latest, Remarks
+from scenes.scene import Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 ASPECT = 1.4  # width of the box over its height

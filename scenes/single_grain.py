@@ -18,22 +18,11 @@ from core.material import area_modulus
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import LONGEST_STEP, Settings
+from scenes.checks import Check, Track, below_height
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    STRONGEST,
-    Check,
-    Handle,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-    below_height,
-    hand,
-    hand_strength,
-)
+from scenes.remarks import Latest, Remarks
+from scenes.scene import STRONGEST, Handle, Scene, Setup, Values, hand, hand_strength
 from scenes.text import Text
 
 APART = 1.7  # half the distance between the centres of two grains, in their radius

@@ -14,20 +14,11 @@ from core.generate import Progress
 from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import Settings
+from scenes.checks import Check, Track
 from scenes.parameter import Parameter
 from scenes.registry import register
-from scenes.scene import (
-    Check,
-    Curve,
-    Handle,
-    Ingredients,
-    Latest,
-    Remarks,
-    Scene,
-    Setup,
-    Track,
-    Values,
-)
+from scenes.remarks import Latest, Remarks
+from scenes.scene import Curve, Handle, Ingredients, Scene, Setup, Values
 from scenes.text import Text
 
 GRAIN = "right grain"

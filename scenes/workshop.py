@@ -7,21 +7,11 @@ import math
 from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
-from scenes.grains import MATERIAL, PAPER, SIZES, recipe
+from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, round_down, round_up
 from scenes.registry import register
-from scenes.scene import (
-    FRICTION,
-    SOLVER,
-    Handle,
-    Scene,
-    Setup,
-    Values,
-    friction,
-    hand,
-    solver,
-    step,
-)
+from scenes.relaxing import SOLVER, step
+from scenes.scene import Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
 
 WALL = 0.8  # thickness [R]

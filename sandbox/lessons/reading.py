@@ -33,7 +33,8 @@ from sandbox.lessons.taken import Taken, known, line_of, number_of, said_of
 from sandbox.words.words import VIEWS
 from scenes import registry
 from scenes.parameter import LARGEST_SEED, shown
-from scenes.scene import Happening, Scene
+from scenes.remarks import Happening
+from scenes.scene import Scene
 
 FORMAT = "auxetic-sandbox lesson"
 VERSION = 1

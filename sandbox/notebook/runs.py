@@ -15,8 +15,8 @@ from sandbox.interrupts import deferred
 from sandbox.session.commands import Protocol
 from sandbox.session.frame import Frame
 from sandbox.session.session import Session
+from scenes.checks import Check
 from scenes.parameter import shown
-from scenes.scene import Check
 from scenes.text import counted
 
 if TYPE_CHECKING:

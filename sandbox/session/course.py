@@ -13,7 +13,8 @@ from core.relaxation import FAILED, StopReason
 from core.rigid import Point
 from sandbox.session.history import Row
 from scenes.accuracy import Estimate, left_over
-from scenes.scene import STRONGEST, Remarks, Setup
+from scenes.remarks import Remarks
+from scenes.scene import STRONGEST, Setup
 from scenes.text import Text
 
 LOCKED_AFTER = 3  # increments in a row that all the strength of the hand could not make

@@ -21,7 +21,9 @@ from sandbox.session.hands import Hands
 from sandbox.session.history import Event, History
 from sandbox.session.mark import RunMark
 from scenes.accuracy import UNKNOWN
-from scenes.scene import Check, Earlier, Holding, Latest, Remarks, Scene, Setup, Track, Values
+from scenes.checks import Check, Track
+from scenes.remarks import Earlier, Holding, Latest, Remarks
+from scenes.scene import Scene, Setup, Values
 from scenes.text import Text, message
 
 TOO_TIGHT = "that was too tight for the grains: it is taken back"

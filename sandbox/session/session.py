@@ -50,8 +50,9 @@ from sandbox.session.table import RunTable
 from sandbox.session.take_frame import take
 from sandbox.session.undo import OLD_RUN_BYTES, Moment, Past, Start
 from scenes import registry
+from scenes.checks import Check
 from scenes.parameter import check_seed
-from scenes.scene import Check, Ingredients, Scene, Setup, Values
+from scenes.scene import Ingredients, Scene, Setup, Values
 from scenes.text import message
 
 COMPILING, PACKING = "compiling the solver (first start only)", "packing the grains"

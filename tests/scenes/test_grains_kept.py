@@ -10,7 +10,8 @@ from core.packing import Packing
 from core.rigid import Point
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
-from scenes.scene import HAND_STRENGTH, STRONGEST, Check
+from scenes.checks import Check
+from scenes.scene import HAND_STRENGTH, STRONGEST
 
 KEPT = "no grain is lost and none has passed a wall"
 MACHINE: dict[str, object] = {HAND_STRENGTH: STRONGEST}  # a weaker hand is locked before

@@ -14,8 +14,8 @@ from sandbox.lessons.tours import tour
 from sandbox.session.commands import Grab, Move, Protocol
 from sandbox.session.replay import replay
 from sandbox.session.session import Session
+from scenes.checks import Check, Track
 from scenes.gravity_hopper import REST, TREMBLE
-from scenes.scene import Check, Track
 
 
 def hopper(kind: str = "mixed", seed: int = 1, **settings: object) -> Session:

@@ -17,7 +17,8 @@ from sandbox.session.replay import replay
 from sandbox.session.session import Session
 from scenes import registry
 from scenes.grains import SIZES, recipe
-from scenes.scene import HAND_STRENGTH, STRONGEST, step
+from scenes.relaxing import step
+from scenes.scene import HAND_STRENGTH, STRONGEST
 from tests.scenes.test_registry import small
 
 BULK = [
