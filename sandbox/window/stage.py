@@ -22,7 +22,8 @@ from sandbox.window.motion import little_motion_wished
 from sandbox.window.notices import Notices
 from sandbox.window.parts import Part
 from sandbox.window.picture import Picture
-from sandbox.window.solvers.panes import Panes, Wanted
+from sandbox.window.solvers.panes import Panes
+from sandbox.window.solvers.wanted import Wanted
 from sandbox.window.sound import Sound
 from sandbox.window.tone import Tone
 from sandbox.words import words

@@ -165,7 +165,7 @@ def test_a_body_that_is_locked_holds_back_none_beside_it(
         return replace(frame, handles=(handle,), stroke=stroke)
 
     places = {"regular": (1.0, 1.0), "mixed": (2.0, 2.0), "auxetic": (8.0, 8.0)}
-    for pane in stage.panes._panes:
+    for pane in stage.panes._row.panes:
         pane.solver.stop()
         kept = pane.solver.snapshot
         assert kept.frame is not None

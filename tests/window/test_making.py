@@ -138,14 +138,14 @@ def test_after_a_crash_the_next_run_goes_on(tmp_path: Path) -> None:
     wait(first, lambda frame: frame.grains == 1)
     first.close(clean=False)
     (leftover,) = find(tmp_path).leftovers
-    second = Panes("regular", 5, autosave=Autosave(tmp_path, 0.02))
+    autosave = Autosave(tmp_path, 0.02)
+    second = Panes("regular", 5, autosave=autosave)
     second.take_up(leftover)
     frame = wait(second, lambda frame: frame.grains == 1)
     assert (frame.packing, frame.seed) == ("mixed", 1)
     assert len(frame.bodies) == 3
     wait(second, lambda _: not leftover.path.exists())
-    assert second.autosave is not None
-    kept = read_scene(second.autosave.path)
+    kept = read_scene(autosave.path)
     assert kept.grains.hash() == leftover.file.grains.hash()
     second.close()
     assert not list(tmp_path.iterdir())

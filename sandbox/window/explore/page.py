@@ -17,7 +17,7 @@ from sandbox.window.explore.ends import Ends
 from sandbox.window.explore.explorer import Explorer
 from sandbox.window.explore.side import Side
 from sandbox.window.keys import Action
-from sandbox.window.solvers.panes import Wanted
+from sandbox.window.solvers.wanted import Wanted
 from sandbox.window.stage import Stage
 from sandbox.words import words
 from scenes import registry
