@@ -1,48 +1,26 @@
-"""A lesson as a screen reader has it: what is asked, what may not be done yet, what is done; one hand and several packings."""
+"""A lesson as a screen reader has it: what is asked, what may not be done yet, what is drawn, what is done."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import Any
 
+import pygame
 import pytest
 
 from sandbox.draw.pages.tour_card import FIELD, NEXT, OPTION
-from sandbox.lessons.reading import parse_lesson
-from sandbox.session.commands import Move
-from sandbox.session.frame import Frame
+from sandbox.draw.widgets.scale import shown
+from sandbox.lessons.answers import mean_distance
+from sandbox.session.commands import Move, Protocol
 from sandbox.window.access.speech import Speech
-from sandbox.window.access.tree import Tree
-from sandbox.window.measure.measuring import SPREADS
+from sandbox.window.asking import SKETCH
 from sandbox.words import words
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
+from tests.window.hearing import do, seen
+from tests.window.lesson_text import begin, ready
 
-LESSON = """
-format = "auxetic-sandbox lesson"
-version = 1
-scene = "intruder"
-title = "A lesson"
-[[step]]
-key = "pick"
-packings = ["mixed"]
-say = "Look."
-do = "Drag."
-until = { moved = "intruder", by = 2.0 }
-[step.predict]
-kind = "choice"
-ask = "Which?"
-options = ["this", "that"]
-[[step]]
-key = "guess"
-say = "Once more."
-[step.predict]
-kind = "number"
-ask = "How much?"
-unit = "k R"
-"""
 X = "canvas/intruder/x"
 
 
@@ -51,24 +29,6 @@ def desk() -> Iterator[Desk]:
     place = Desk((1024, 720))
     yield place
     place.app.close()
-
-
-def seen(desk: Desk) -> Tree:
-    return Tree(desk.app.reader.parts)
-
-
-def do(desk: Desk, name: str, action: str = "CLICK", value: object = None) -> None:
-    seen(desk).nodes[name].does[action](value)
-    desk.app.tick()
-
-
-def begin(desk: Desk) -> None:
-    desk.app.guide.begin(parse_lesson("mine", LESSON.encode(), ""))
-
-
-def ready(desk: Desk) -> None:
-    desk.until(lambda: not desk.app._splash and bool(desk.app.stage.picture.panes()))
-    desk.app.tick()
 
 
 def test_a_reader_that_is_there_from_the_beginning_hears_the_first_card(
@@ -85,7 +45,7 @@ def test_a_reader_that_is_there_from_the_beginning_hears_the_first_card(
     speech = Speech(desk.app.stage, desk.app.guide)
     speech.begin()  # while the scene is built, there is nothing to be read
     said = list(speech.new())
-    step = words.TOUR_STEP.format(step=1, steps=2)
+    step = words.TOUR_STEP.format(step=1, steps=3)
     for text in ("A lesson", step, "Look.", "Which?"):
         assert said.count(text) == 1, text
     built.set()
@@ -93,7 +53,7 @@ def test_a_reader_that_is_there_from_the_beginning_hears_the_first_card(
     assert "Look." not in list(speech.new())
     desk.app.guide._go(1)
     later = list(speech.new())
-    assert words.TOUR_STEP.format(step=2, steps=2) in later
+    assert words.TOUR_STEP.format(step=2, steps=3) in later
     assert "A lesson" not in later
 
 
@@ -150,51 +110,44 @@ def test_that_a_step_is_done_is_said(desk: Desk) -> None:
     assert words.TOUR_DONE in list(speech.new())
 
 
-@pytest.mark.parametrize("held", [True, False])
-def test_a_body_that_is_locked_holds_back_none_beside_it(
-    desk: Desk, monkeypatch: pytest.MonkeyPatch, held: bool
-) -> None:
-    """The hand by keys, and the slider, go on from the body that has followed best."""
-    stage, arrows = desk.app.stage, desk.app.reader.parts.arrows
-    stage.start("intruder", packings=("regular", "mixed", "auxetic"))
-    desk.until(lambda: not desk.app._splash and len(stage.picture.panes()) == 3)
-    target = (9.0, 0.0) if held else None
+def test_a_sketch_is_told_while_it_is_drawn_and_compared_after(desk: Desk) -> None:
+    app = desk.app
+    speech = Speech(app.stage, app.guide)
+    begin(desk)
+    app.guide._go(2)
+    ready(desk)
 
-    def at(frame: Frame, x: float, stroke: float) -> Frame:
-        handle = replace(frame.handles[0], x=x, y=0.0, target=target)
-        return replace(frame, handles=(handle,), stroke=stroke)
+    def heard(seconds: float = 0.0) -> list[str]:
+        return [*speech._from_the_sketch(seconds), *speech._from_the_sketch(seconds + 10.0)]
 
-    places = {"regular": (1.0, 1.0), "mixed": (2.0, 2.0), "auxetic": (8.0, 8.0)}
-    for pane in stage.panes._row.panes:
-        pane.solver.stop()
-        kept = pane.solver.snapshot
-        assert kept.frame is not None
-        moved = replace(kept, frame=at(kept.frame, *places[pane.packing]))
-        pane.solver._snapshot = moved
-    monkeypatch.setattr(stage, "send", lambda command: sent.append(command))
-    sent: list[object] = []
-    number = seen(desk).nodes[X].number
-    assert number is not None
-    assert number.value == 8.0
-    stage.focus.go("canvas/intruder", True)
-    handle = arrows.handle_state()
-    assert handle is not None
-    arrows.lead(handle, 0.25, 0.0)
-    assert sent[-1] == Move("intruder", 9.25 if held else 8.25, 0.0)
-
-
-def test_histograms_are_told_in_words_and_no_line_is_empty(desk: Desk) -> None:
-    stage = desk.app.stage
-    stage.start("intruder", packings=("regular", "auxetic"))
-    desk.until(lambda: not desk.app._splash and len(stage.picture.panes()) == 2)
-    desk.app.measuring.take(SPREADS)
-    desk.app.tick()
-    tree = seen(desk)
-    read = [node for node in tree.nodes.values() if node.role == "LABEL"]
-    assert all(node.text.strip(" :") == node.text for node in read), read
-    told = [node.text for node in read if node.text.startswith(words.MEASURE_FORCES)]
-    assert len(told) == 2
-    for text in told:
-        shares = text.rpartition(": ")[2].removesuffix(" %").split(words.LIST_SIGN)
-        assert len(shares) > 8
-        assert abs(sum(map(float, shares)) - 100.0) <= len(shares) / 2
+    node = seen(desk).nodes[SKETCH]
+    assert words.SKETCH_NOTHING in node.about
+    assert app.stage.picture.panes()[0][0].curve_label in node.about
+    assert any(one in node.about for one in heard())
+    desk.key(pygame.K_SPACE, " ")
+    for key in (*[pygame.K_RIGHT] * 8, *[pygame.K_UP] * 20):
+        desk.key(key)
+    desk.key(pygame.K_SPACE, " ")
+    drawn = seen(desk).nodes[SKETCH].about
+    assert "17 points, from 0 at 0 to 2 at 7.5" in drawn
+    assert words.SKETCH_PEN.format(along="7.5", up="2") in drawn
+    said = heard(20.0)
+    assert any("17 points" in one for one in said)
+    assert any("7.5" in one for one in said)
+    assert heard(40.0) == []
+    desk.key(pygame.K_RETURN, "\r")
+    assert SKETCH not in seen(desk).nodes
+    assert "17 points" in seen(desk).nodes["sketch"].text
+    app.stage.send(Protocol(True))
+    desk.until(lambda: app.guide.done)
+    app.stage.panes.pause_or_go_on()
+    desk.until(lambda: not app.stage.picture.panes()[0][0].busy)
+    app.tick()
+    frame = app.stage.picture.panes()[0][0]
+    sketch = app.guide.asking.sketch
+    assert sketch is not None
+    away = mean_distance(frame.curve_stroke, frame.curve_force, sketch.along, sketch.up)
+    (line,) = [each.text for each in app.guide.asking.measured]
+    assert f"{shown(float(f'{away:.3g}'))} k R" in line
+    assert seen(desk).nodes["sketch/0"].text == line
+    assert heard(60.0) == [line]  # once

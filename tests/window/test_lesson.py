@@ -19,61 +19,17 @@ from sandbox.window.asking import SKETCH, told
 from sandbox.window.guide import Guide
 from sandbox.words import language, words
 from tests.window.desk import Desk
-
-TEXT = """
-format = "auxetic-sandbox lesson"
-version = 1
-scene = "intruder"
-hide = ["packing", "seed", "friction", "files"]
-[[step]]
-key = "pick"
-packings = ["mixed"]
-say = "Look."
-do = "Drag."
-until = { moved = "intruder", by = 2.0 }
-[step.predict]
-kind = "choice"
-ask = "Which?"
-options = ["this", "that"]
-right = 2
-answer = "That, as everybody knows."
-[[step]]
-key = "guess"
-say = "Look."
-[step.predict]
-kind = "number"
-ask = "How much?"
-right = 3
-within = 0.5
-unit = "k R"
-[[step]]
-key = "draw"
-say = "Look."
-do = "Drag."
-until = { increments = 2 }
-hide = ["solver"]
-[step.predict]
-kind = "sketch"
-ask = "How does it go on?"
-along = [0, 30]
-up = [0, 4]
-"""
+from tests.window.lesson_text import LESSON, begin, ready
 
 
 @pytest.fixture
 def desk(tmp_path: Path) -> Iterator[Desk]:
     place = Desk((1280, 720))
     place.app.guide.answers = Answers(tmp_path / "answers.csv")
-    place.app.guide.begin(parse_lesson("mine", TEXT.encode(), ""))
+    begin(place)
     ready(place)
     yield place
     place.app.close()
-
-
-def ready(desk: Desk) -> None:
-    run = desk.app.stage.panes
-    desk.until(lambda: not desk.app._splash and all(s.phase == "running" for s in run.snapshots))
-    desk.app.tick()
 
 
 def button(desk: Desk, name: str) -> tuple[int, int]:
@@ -180,7 +136,7 @@ def test_every_answer_leaves_a_row_and_says_whether_it_had_been_shown(
     guide.back()
     guide.press(NEXT)
     guide.close()
-    guide.begin(parse_lesson("mine", TEXT.encode(), ""))  # the same sitting
+    guide.begin(parse_lesson("mine", LESSON.encode(), ""))  # the same sitting
     ready(desk)
     guide.press(NEXT)
     told = [(row["step"], row["what"], row["given"], row["when"]) for row in rows(tmp_path)]
