@@ -20,10 +20,13 @@ from core.candidates import BODY, GRAIN
 from core.errors import InputError
 from core.frictional_contacts import Origin
 from core.packing import Packing
+from core.slip import TANGENTIAL_STIFFNESS
 
 Indices = NDArray[np.int64]
 
-SPIN_MASS = 2.0  # inertia of a spin over R0², relative to x and y
+# Inertia of a spin over R0², relative to x and y: as their stiffnesses are in a ring of like contacts, Σ k_t to Σ (C + k_t)/2. So
+# neither waits for the other.
+SPIN_MASS = 2.0 * TANGENTIAL_STIFFNESS / (1.0 + TANGENTIAL_STIFFNESS)
 
 
 class Friction:

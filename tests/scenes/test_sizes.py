@@ -73,7 +73,7 @@ def test_single_sized(name: str) -> None:
 @pytest.mark.parametrize("name", BULK)
 def test_few_large_among_many_small(name: str) -> None:
     """Also with a step that is too long for the small ones: then bodies go a quarter of their radius an increment."""
-    session = after(name, 3, size_ratio=6.0, small_fraction=0.75, step=0.15)
+    session = after(name, 10, size_ratio=6.0, small_fraction=0.75, step=0.15)
     radius = session.run.setup.packing.rest_radius
     assert np.sum(radius < 1.0) == round(0.75 * len(radius))
     assert set(radius) == {1.0, 1.0 / 6.0}

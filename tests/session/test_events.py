@@ -163,13 +163,10 @@ def test_a_stronger_hand_goes_on_where_a_weaker_one_was_locked() -> None:
 
 
 def test_a_hopper_under_gravity_clogs_and_flows_again() -> None:
-    kinds: list[str] = []
-    for seed in (1, 2):
-        settings = {"grains": 60, "width": 16.0, "orifice": 2.0 + 0.5 * (seed - 1)}
-        session = Session("gravity_hopper", "regular", seed, settings)
-        session.build()
-        do(session, Protocol(True))
-        go(session, 450)
-        kinds += [event.kind for event in session.frame().events]
-        assert kinds[0] == "clog"
-    assert set(kinds) == {"clog", "avalanche"}
+    settings = {"grains": 60, "width": 16.0, "orifice": 2.0}
+    session = Session("gravity_hopper", "regular", 6, settings)
+    session.build()
+    do(session, Protocol(True))
+    go(session, 450)
+    kinds = [event.kind for event in session.frame().events]
+    assert kinds == ["clog", "avalanche", "clog"]
