@@ -54,8 +54,16 @@ class Desk:
     def until(self, condition: Callable[[], bool], seconds: float = 60.0) -> None:
         patience = time.perf_counter() + seconds
         while not condition():
-            assert time.perf_counter() < patience, "waited in vain"
+            assert time.perf_counter() < patience, f"in vain: {self._where()}"
             self.app.tick()
+
+    def _where(self) -> str:
+        """What a person would see: the page, how far each packing is, what was said last."""
+        stage = self.app.stage
+        runs = [
+            (s.phase, s.text, s.error, s.frame and s.frame.increment) for s in stage.panes.snapshots
+        ]
+        return f"{self.page()}, {runs}, {list(stage.notices.said)[-3:]}"
 
     def post(self, kind: int, **more: Any) -> None:
         pygame.event.post(pygame.event.Event(kind, more))
