@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from core.squeezed import AUXETIC_AREA, MOUTH, NOTCH, RING_WALL, TIP, WING
-from sandbox import __version__
 from sandbox.draw import views
 from sandbox.draw.event_shapes import SHAPES
 from sandbox.draw.raster import made_grains
@@ -24,7 +23,7 @@ from sandbox.draw.theme import (
     packing_colour,
     packing_dash,
 )
-from sandbox.player.pieces import as_json, asset, colours, filled, marked, policy
+from sandbox.player.pieces import as_json, asset, colours, document, marked, policy
 from sandbox.player.recording import recording
 from sandbox.player.story import PLAYER, story
 from sandbox.player.tape import Tape
@@ -33,7 +32,7 @@ from sandbox.words.language import available, in_each, speaking
 
 SCRIPTS = (
     *("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "plot.js"),
-    *("panes.js", "inspect.js", "labels.js", "player.js"),
+    *("legend.js", "panes.js", "inspect.js", "labels.js", "player.js"),
 )
 SHADES = 64  # of a colour map
 # Words of the window that the page says too.
@@ -84,7 +83,6 @@ def page(tape: Tape, look: Look | None = None) -> str:
             "language": code,
             "theme": look.theme,
             "policy": policy(script),
-            "version": __version__,
             "title": html.escape(titles["title"][at]),
             "question": html.escape(titles["question"][at]),
             "style": "\n".join([colours(), asset("player.css"), look.style]),
@@ -95,18 +93,18 @@ def page(tape: Tape, look: Look | None = None) -> str:
             "script": script,
             "recording": recorded,
         }
-    return filled(asset("player.html"), values)
+    return document(asset("player.html"), values)
 
 
 def _paragraphs(tape: Tape) -> str:
     return "".join(f"<p>{html.escape(text)}</p>" for text in story(tape))
 
 
-def about(said: Callable[[str], dict[str, str]]) -> dict[str, Any]:
-    """What is the same for every run: words, colours, signs. ``said`` has all words of a language."""
+def about(said: Callable[[str], dict[str, str]], keys: str = "player_keys") -> dict[str, Any]:
+    """What is the same for every run: words, colours, signs. ``said`` has all words of a language, table ``keys`` its keys."""
     return {
         "words": [said(code) for code in available()],
-        "keys": [language.table(code)["player_keys"]["keys"] for code in available()],
+        "keys": [language.table(code)[keys]["keys"] for code in available()],
         "themes": {name: _theme(theme) for name, theme in THEMES.items()},
         "packings": {
             name: {"colour": packing_colour(name), "dash": packing_dash(name)}

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from importlib.resources import files
 from typing import Any
 
+from sandbox import __version__
 from sandbox.draw.theme import EVENT, HAND, THEMES, Theme, mix
 from sandbox.words.language import available, speaking
 
@@ -21,6 +22,11 @@ def filled(template: str, values: dict[str, str]) -> str:
         name, end, rest = part.partition("}}")
         parts.append(values[name] + rest if end and name in values else part)
     return "".join(parts)
+
+
+def document(body: str, values: dict[str, str]) -> str:
+    """A page: the head that all have, and a template for its body, filled in."""
+    return filled(asset("head.html") + body, {"theme": "dark", "version": __version__} | values)
 
 
 def policy(script: str) -> str:

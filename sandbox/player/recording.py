@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -52,6 +52,8 @@ def recording(tape: Tape) -> bytes:
         raise InputError("there is nothing to show yet: add the state at the start")
     panes = list(zip(*moments, strict=True))
     tops = _tops(panes)
+    # What follows from shapes gets its scale where shapes are known.
+    scales = {"pressure": tops.pressure, "fringes": tops.stress, "motion": tops.motion}
     writer, texts = Writer(), Texts()
     first = tape.last[0]
     head = {
@@ -65,7 +67,7 @@ def recording(tape: Tape) -> bytes:
             "stroke": in_each(lambda: words.say(first.stroke_label)),
         },
         "limit": first.hand_limit,
-        "views": [_view(view, tops) for view in VIEWS.values()],
+        "views": [view_of(view, scales) for view in VIEWS.values()],
         "tops": {"chains": tops.force, "hand": tops.hand},
         "panes": [
             _pane(writer, texts, kept, tape.last, place, tops) for place, kept in enumerate(panes)
@@ -123,13 +125,13 @@ def _event(event: Event, increments: Sequence[int]) -> dict[str, Any]:
     }
 
 
-def _view(view: View, tops: Tops) -> dict[str, Any]:
-    of = {"pressure": tops.pressure, "fringes": tops.stress, "motion": tops.motion}
+def view_of(view: View, tops: Mapping[str, float]) -> dict[str, Any]:
+    """A view as the script knows it, with the top of its scale if there is one in ``tops``."""
     return {
         "name": view.name,
         "title": in_each(lambda: view.title),
         "unit": view.unit,
-        "top": of.get(view.name),  # what follows from shapes gets its scale where shapes are known
+        "top": tops.get(view.name),
         "least": view.least,
         "valued": view.measure is not None,
         "ramp": "fringes" if view.name == "fringes" else "fill",

@@ -5,7 +5,8 @@ from __future__ import annotations
 import html
 from collections.abc import Callable, Sequence
 
-from sandbox.player.pieces import as_json, asset, colours, filled, policy, spoken
+from sandbox.player.pieces import as_json, asset, colours, policy, spoken
+from sandbox.player.pieces import document as whole
 from sandbox.words import language, words
 from sandbox.words.language import available
 from sandbox.words.words import Section
@@ -59,4 +60,4 @@ def document(title: Callable[[], str], body: str, trail: Sequence[str] = ()) -> 
         "body": body,
         "script": script,
     }
-    return filled(asset("page.html", "sandbox.site"), values)
+    return whole(asset("page.html", "sandbox.site"), values)

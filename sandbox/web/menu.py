@@ -6,10 +6,9 @@ import base64
 import html
 from collections.abc import Sequence
 
-from sandbox import __version__
 from sandbox.draw.pages.thumbnail import path_of
 from sandbox.draw.theme import THEMES
-from sandbox.player.pieces import asset, colours, filled, marked, policy, spoken
+from sandbox.player.pieces import asset, colours, document, marked, policy, spoken
 from sandbox.web.toolchain import PAGE
 from sandbox.words import language, words
 from sandbox.words.language import available
@@ -31,7 +30,6 @@ def menu(names: Sequence[str]) -> str:
     values = {
         "language": shown,
         "policy": policy(script),
-        "version": __version__,
         "title": html.escape(words.SPLASH_TITLE),
         "heading": spoken(lambda: words.SPLASH_TITLE, shown),
         "about": spoken(lambda: words.SPLASH_ABOUT, shown),
@@ -41,7 +39,7 @@ def menu(names: Sequence[str]) -> str:
         "scenes": "".join(_card(name, shown) for name in names),
         "script": script,
     }
-    return filled((PAGE / "menu.html").read_text(encoding="utf-8"), values)
+    return document((PAGE / "menu.html").read_text(encoding="utf-8"), values)
 
 
 def _card(name: str, shown: str) -> str:

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sandbox import __version__
 from sandbox.draw.theme import packing_dash
-from sandbox.draw.views import VIEWS, View
+from sandbox.draw.views import VIEWS
 from sandbox.lessons import tours
 from sandbox.player.page import about, words_of
-from sandbox.player.pieces import as_json, asset, colours, filled, marked, policy, spoken
+from sandbox.player.pieces import as_json, asset, colours, document, marked, policy, spoken
+from sandbox.player.recording import view_of
 from sandbox.web.increment import course, curve
 from sandbox.web.increment.memory import COUNTS, FIRST_INT, PART, ROW, SIZES
 from sandbox.web.increment.systems import PLACES
@@ -94,9 +94,7 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
     with speaking(code):
         values = {
             "language": code,
-            "theme": "dark",
             "policy": _policy(script),
-            "version": __version__,
             "title": html.escape(words.title(built.scene.name)),
             "question": html.escape(words.question(built.scene.name)),
             "style": "\n".join(
@@ -110,7 +108,7 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
             "packings": _packed(packed),
             "script": script,
         }
-    return filled((PAGE / "page.html").read_text(encoding="utf-8"), values)
+    return document((PAGE / "page.html").read_text(encoding="utf-8"), values)
 
 
 def _tour(scene: Scene, shown: str) -> str:
@@ -177,7 +175,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
         "title": in_each(lambda: words.title(scene.name)),
         "question": in_each(lambda: words.question(scene.name)),
         "about": in_each(lambda: words.about(scene.name)),
-        "views": [_view(VIEWS[name]) for name in SHOWN],
+        "views": [view_of(VIEWS[name], {}) for name in SHOWN],
         "packings": [
             _packing(name, setup)
             for name, setup in zip(built.packings, built.setups[0], strict=True)
@@ -231,21 +229,6 @@ def _packing(name: str, setup: Setup) -> dict[str, Any]:
             }
             for body in setup.world.bodies
         ],
-    }
-
-
-def _view(view: View) -> dict[str, Any]:
-    return {
-        "name": view.name,
-        "title": in_each(lambda: view.title),
-        "unit": view.unit,
-        "top": None,
-        "least": view.least,
-        "valued": view.measure is not None,
-        "ramp": "fill",
-        "made": view.made,
-        "chains": view.chains,
-        "onlyChains": view.only_chains,
     }
 
 

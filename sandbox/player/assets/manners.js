@@ -1,4 +1,4 @@
-// Theme and language: as this computer asks for them, and as they were chosen on the page before, in the address.
+// Theme and language: as this computer asks for them, and as they were chosen on the page before, in the address. What a key means.
 
 const inAddress = new URLSearchParams(location.search);
 
@@ -20,4 +20,11 @@ function settle(code, theme) {
   document.documentElement.dataset.theme = theme;
   for (const part of document.querySelectorAll("[data-said]")) part.hidden = part.lang !== code;
   for (const link of document.querySelectorAll("a[data-own]")) link.search = `?language=${code}&theme=${theme}`;
+}
+
+// What is printed on a key; where that is a letter of another script, what a keyboard with Latin letters has in that place.
+function signOf({ key, code, shiftKey }) {
+  if (!/^\p{L}$/u.test(key) || /^\p{Script=Latin}$/u.test(key)) return key;
+  const place = { Comma: ",", Period: "." }[code] ?? code.replace("Key", "").toLowerCase();
+  return shiftKey ? place.toUpperCase() : place;
 }

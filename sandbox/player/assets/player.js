@@ -18,22 +18,6 @@ const view = () => run.views[state.view];
 const last = () => run.increments.length - 1;
 const look = () => ({ theme: state.theme, view: view(), chains: state.chains, scale: devicePixelRatio || 1 });
 
-function element(name, attributes = {}, ...children) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) {
-    if (key in made && key !== "role" && key !== "list") made[key] = value;
-    else made.setAttribute(key, value);
-  }
-  made.append(...children);
-  return made;
-}
-
-function icon(path, name = "") {
-  const template = document.createElement("template"); // its parser knows the namespace
-  template.innerHTML = `<svg viewBox="0 0 24 24" aria-hidden="true" class="${name}"><path d="${path}"></path></svg>`;
-  return template.content.firstChild;
-}
-
 function setText(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
@@ -155,13 +139,6 @@ const OTHERS = {
   End: () => seek(last()),
   Escape: () => lookAt(state.pane, -1),
 };
-
-// What is printed on a key; where that is a letter of another script, what a keyboard with Latin letters has in that place.
-function signOf({ key, code, shiftKey }) {
-  if (!/^\p{L}$/u.test(key) || /^\p{Script=Latin}$/u.test(key)) return key;
-  const place = { Comma: ",", Period: "." }[code] ?? code.replace("Key", "").toLowerCase();
-  return shiftKey ? place.toUpperCase() : place;
-}
 
 function pressed(event) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
