@@ -101,7 +101,7 @@ ROOMS = {
     "record": "files player draw session scenes core",
     "web": "web.increment web.wasm player files draw lessons words scenes core",
     "web.wasm": "web.increment core",
-    "web.increment": "core",
+    "web.increment": "scenes core",
     "site": "record files player session words scenes core",
     "player": "draw draw.raster session words scenes core",
     "studies.accuracy": STUDY,

@@ -15,8 +15,8 @@ from core.friction import Friction
 from core.packing import Packing
 from core.rigid import SAME_POINT, RigidBody
 from core.rigid_contacts import EDGE, VERTEX
-from sandbox.web.increment import curve
-from sandbox.web.increment.memory import COUNTS, PART, ROW, SIZES, Sizes, blank
+from sandbox.web.increment import curve, remarks
+from sandbox.web.increment.memory import COUNTS, KINDS, PART, ROW, SIZES, Sizes, blank
 from sandbox.web.increment.systems import PLACES, TURN
 from scenes.gravity_hopper import REST, TREMBLE
 from scenes.scene import Scene, Setup, Values
@@ -29,6 +29,14 @@ CURVES = {
     "biaxial_press": curve.PRESS,
     "gravity_hopper": curve.GRAINS_OUT,
 }
+REMARKS = {
+    "hopper": remarks.HOPPER,
+    "gravity_hopper": remarks.GRAVITY,
+    "intruder": remarks.DISC,
+    "grain_row": remarks.ROW_OF_GRAINS,
+    "single_grain": remarks.SINGLE,
+}
+SIDES = {"left wall": -1, "right wall": 1}  # of an orifice
 REPEATED = {"gravity_hopper": REST + TREMBLE}  # a script that begins again after so many increments
 PART_NAMES = PART._asdict()
 
@@ -98,6 +106,10 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     counts[COUNTS.script], counts[COUNTS.driven] = -1, world.index(handle.body)
     counts[COUNTS.curve] = CURVES.get(scene.name, curve.FORCE)
     counts[COUNTS.repeats] = scene.name in REPEATED
+    counts[COUNTS.scene] = REMARKS.get(scene.name, remarks.NOBODY)
+    put("side", [SIDES.get(body.name, 0) for body in world.bodies])
+    put("announced", [-1] * KINDS)
+    row[ROW.base] = min(y for _, y in setup.outline)
     row[ROW.rest] = setup.rest
     row[ROW.side] = math.hypot(*np.subtract(setup.outline[1], setup.outline[0]))
     return blocks

@@ -31,7 +31,7 @@ def kernels() -> bytes:
     Raises InputError where the compiler is not installed, or fails.
     """
     require("pages need", "ziglang", "the linker of Zig", "web")
-    sources = source_hash(CORE, HERE / "increment", HERE / "wasm")
+    sources = source_hash(CORE, ROOT / "scenes", HERE / "increment", HERE / "wasm")
     runtime = hashlib.sha256((HERE / "wasm" / "runtime.c").read_bytes()).hexdigest()[:8]
     return _kept(f"kernels-{sources}-{runtime}.wasm", _compile).read_bytes()
 

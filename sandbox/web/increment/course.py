@@ -1,6 +1,6 @@
 """A run under way: the hand or the script pulls, increments follow one another. What ``sandbox.session`` does, as kernels.
 
-One driven body that slides or is dragged; what the session only says or counts for a person is left to the page.
+One driven body that slides or is dragged; what the session says to a person is in ``remarks``.
 """
 
 from __future__ import annotations
@@ -8,15 +8,16 @@ from __future__ import annotations
 import numpy as np
 
 from core.jit import kernel
-from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, hypotenuse, rows_of, way_to
-from sandbox.web.increment.contacts import AT_X, AT_Y, FORCE, IMAGE_X, IMAGE_Y, touching
+from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, hypotenuse, way_to
 from sandbox.web.increment.curve import plotted
 from sandbox.web.increment.increment import failed, increment
 from sandbox.web.increment.memory import (
     COUNTS,
     PART,
     ROW,
+    SETTINGS,
     SIZES,
+    clear,
     counts_of,
     floats_at,
     ints_at,
@@ -37,6 +38,7 @@ from sandbox.web.increment.systems import (
     X,
     Y,
 )
+from scenes.scene import AT_REST
 
 ARRIVED = 1e-6  # [R] a body this near its target is there
 LOCKED_AFTER = 3  # increments in a row that all the strength of the hand could not make
@@ -44,13 +46,6 @@ STUCK = 1e-3  # of a step: a body that moves less than that is stopped
 MOST_RELAXATIONS = 5  # increments after a change, if it takes more than one to relax
 # Commands.
 GRAB, MOVE, RELEASE, SCRIPT_ON, SCRIPT_OFF = range(5)
-
-
-@kernel(allocates=True)
-def clear(values):
-    """All 0."""
-    for k in range(values.shape[0]):
-        values[k] = 0
 
 
 @kernel(allocates=True)
@@ -107,6 +102,23 @@ def set_ratio(kept, auxetic, ratio):
     for i in range(ratios.shape[0]):
         if (np.copysign(1.0, ratios[i]) < 0.0) == (auxetic != 0):
             ratios[i] = ratio
+    touched(kept)
+
+
+@kernel(allocates=True)
+def set_ratios(kept, size):
+    """Poisson's ratio of all grains, with the sign of their kinds."""
+    set_ratio(kept, 0, size)
+    set_ratio(kept, 1, -size)
+
+
+@kernel(allocates=True)
+def set_weight(kept, weight, fall):
+    """Weight of a large grain [k/R], and how far one that nothing holds sinks in an increment [R], in an upright hopper."""
+    settings, row = floats_at(kept, PART.settings, SETTINGS), row_of(kept)
+    drag = weight / fall
+    settings[7], settings[8], settings[9] = 0.0, -weight, drag
+    row[ROW.rest] = AT_REST * weight / drag
     touched(kept)
 
 
@@ -204,28 +216,6 @@ def go_on(kept, reason, left, at_start):
 
 
 @kernel(allocates=True)
-def show(kept, contacts):
-    """Put contacts where a page reads them."""
-    counts, room = counts_of(kept), kept.ints[SIZES.contacts]
-    first, second = ints_at(kept, PART.first, room), ints_at(kept, PART.second, room)
-    force, ends = floats_at(kept, PART.force, room), floats_at(kept, PART.ends, 2 * room)
-    pairs = min(contacts.pairs, room)
-    shown = min(pairs + contacts.bodies, room)
-    for k in range(pairs):
-        first[k] = contacts.i[k]
-        second[k] = contacts.j[k]
-        force[k] = contacts.pair[FORCE, k]
-    for k in range(shown - pairs):
-        first[pairs + k] = contacts.grain[k]
-        second[pairs + k] = -1
-        force[pairs + k] = contacts.body[FORCE, k]
-        ends[pairs + k] = contacts.body[AT_X, k] + contacts.body[IMAGE_X, k]
-        ends[room + pairs + k] = contacts.body[AT_Y, k] + contacts.body[IMAGE_Y, k]
-    counts[COUNTS.pairs] = pairs
-    counts[COUNTS.shown] = shown
-
-
-@kernel(allocates=True)
 def advance(kept):
     """One increment, if anything is to be done: 1 then, else 0."""
     system, counts, row = system_in(kept), counts_of(kept), row_of(kept)
@@ -234,6 +224,7 @@ def advance(kept):
     rubs = system.settings.coefficient > 0.0
     made = increment(system, 0) if rubs else increment(system, None)
     at_start = not counts[COUNTS.rows]
+    counts[COUNTS.changed] = 1 if counts[COUNTS.touched] else 0
     if counts[COUNTS.touched]:
         fewer = counts[COUNTS.touched] - 1
         counts[COUNTS.touched] = fewer if made.reason == ITERATION_LIMIT else 0
@@ -243,11 +234,6 @@ def advance(kept):
     push = system.past.reactions[driven]
     place = system.bodies.places[driven]
     left = 0 if at_start else remove_gone(kept)
-    contacts = made.contacts
-    if left:
-        fewer_grains = system_in(kept).grains
-        contacts = touching(fewer_grains, rows_of(system.bodies), None)
-    show(kept, contacts)
     go_on(kept, made.reason, left, at_start)
     stroke = follow(kept, system, made)
     resisting = -(push[0] * row[ROW.direction_x] + push[1] * row[ROW.direction_y]) + 0.0
@@ -271,6 +257,7 @@ def advance(kept):
     row[ROW.energy] = made.energy
     row[ROW.share] = made.share
     if left:
+        row[ROW.waited] = row[ROW.stroke] - row[ROW.exit_stroke]
         row[ROW.exit_stroke] = row[ROW.stroke]
         row[ROW.exit_force] = row[ROW.resisting]
     counts[COUNTS.rows] += 1

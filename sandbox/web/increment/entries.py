@@ -10,6 +10,7 @@ from numba import types
 from core.jit import kernel
 from sandbox.web.increment import course
 from sandbox.web.increment.memory import Kept
+from sandbox.web.increment.observe import observe
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
 _I, _F = types.CPointer(types.int64), types.CPointer(types.float64)
@@ -23,8 +24,12 @@ def blocks(ints, floats, whole, others):
 
 
 def advance(ints, whole, floats, others):
-    """``course.advance``."""
-    return course.advance(blocks(ints, floats, whole, others))
+    """``course.advance``, and what is to be seen of it."""
+    kept = blocks(ints, floats, whole, others)
+    made = course.advance(kept)
+    if made:
+        observe(kept)
+    return made
 
 
 def command(ints, whole, floats, others, kind, body, x, y):
@@ -47,6 +52,16 @@ def set_ratio(ints, whole, floats, others, auxetic, value):
     course.set_ratio(blocks(ints, floats, whole, others), auxetic, value)
 
 
+def set_ratios(ints, whole, floats, others, size):
+    """``course.set_ratios``."""
+    course.set_ratios(blocks(ints, floats, whole, others), size)
+
+
+def set_weight(ints, whole, floats, others, weight, fall):
+    """``course.set_weight``."""
+    course.set_weight(blocks(ints, floats, whole, others), weight, fall)
+
+
 _KEPT = (_I, _WHOLE, _F, _WHOLE)
 ENTRIES: dict[str, tuple[Any, Any]] = {
     "advance": (advance, _WHOLE(*_KEPT)),
@@ -54,4 +69,6 @@ ENTRIES: dict[str, tuple[Any, Any]] = {
     "set_strength": (set_strength, types.void(*_KEPT, _NUMBER)),
     "set_friction": (set_friction, types.void(*_KEPT, _NUMBER)),
     "set_ratio": (set_ratio, types.void(*_KEPT, _WHOLE, _NUMBER)),
+    "set_ratios": (set_ratios, types.void(*_KEPT, _NUMBER)),
+    "set_weight": (set_weight, types.void(*_KEPT, _NUMBER, _NUMBER)),
 }

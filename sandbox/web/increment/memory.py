@@ -58,6 +58,10 @@ class Course(NamedTuple):
     curve: int = 11  # what is plotted: see ``curve``
     moving: int = 12  # do the grains go on by themselves?
     repeats: int = 13  # does the script begin again where it ends?
+    changed: int = 14  # has the latest increment only relaxed what was changed?
+    scene: int = 15  # whose remarks are made: see ``remarks``
+    said: int = 16  # sentences about the latest increment
+    before: int = 17  # contacts between grains in the increment before
 
 
 class Row(NamedTuple):
@@ -81,9 +85,38 @@ class Row(NamedTuple):
     rest: int = (
         15  # grains that come no further in an increment are at rest [R]; ∞ where there is no drag
     )
+    waited: int = 16  # stroke between the exits of the latest grain and of the one before it
+    base: int = 17  # height of the lips of an orifice [R]
 
 
-COUNTS, ROW, SIZES = Course(), Row(), Sizes(*range(8))
+class Said(NamedTuple):
+    """Columns of the part ``said``: a sentence a row."""
+
+    sentence: int = 0  # which: see ``remarks``
+    shown: int = 1  # 0: it only tells an event
+    event: int = 2  # the kind of an event that begins with it, or −1
+    values: int = 3  # four numbers from here on
+
+
+class Drive(NamedTuple):
+    """Places in the part ``drive``: what the increments before came to, for who looks for a sudden fall."""
+
+    stroke: int = 0  # in the one before
+    force: int = 1
+    older_stroke: int = 2  # and before that
+    older_force: int = 3
+    sum: int = 4  # of the magnitudes of all forces so far
+    asked: int = 5  # was the driven body asked for?
+    moved_x: int = 6  # [R]
+    moved_y: int = 7
+
+
+COUNTS, ROW, SIZES, SAID, DRIVE = Course(), Row(), Sizes(*range(8)), Said(), Drive()
+SENTENCES, COLUMNS = (
+    8,
+    SAID.values + 4,
+)  # sentences about an increment, at most, and numbers of each
+KINDS = 4  # of events
 SETTINGS = len(Settings._fields)
 PLACE_OF_OFFSETS = 8
 
@@ -110,6 +143,12 @@ class Parts(NamedTuple):
     corners: int  # (corners, 2) [R]
     force: int  # (contacts,) of contacts that are shown [k R]
     ends: int  # (2, contacts) where those with bodies touch [R]
+    pressure: int  # (N,) in each grain [k]
+    difference: int  # (N,) of the principal stresses [k]
+    motion: int  # (N,) in the latest increment, against the mean of all [R]
+    said: int  # (SENTENCES, COLUMNS)
+    drive: int
+    force_before: int  # (contacts,) between grains, in the increment before [k R]
     label: int  # of ints, from here
     keys: int
     known: int
@@ -120,6 +159,12 @@ class Parts(NamedTuple):
     blocked: int  # (B,) is it stopped until the hand moves?
     first: int  # (contacts,) grains of contacts that are shown
     second: int  # the other; −1: a body
+    side: int  # (B,) of an orifice: −1 left of it, 1 right, 0 neither
+    squeezed: int  # (N,) further than a real grain could be?
+    pointed: int  # (N,) is it meant by what is said?
+    going_on: int  # (KINDS,) events
+    announced: int  # (KINDS,) grains that had left at the latest of a kind; −1: none yet
+    pair_before: int  # (contacts,) labels of both grains
 
 
 PART = Parts(*range(PLACE_OF_OFFSETS, PLACE_OF_OFFSETS + len(Parts._fields)))
@@ -150,6 +195,12 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "corners": 2 * sizes.corners,
         "force": sizes.contacts,
         "ends": 2 * sizes.contacts,
+        "pressure": n,
+        "difference": n,
+        "motion": n,
+        "said": SENTENCES * COLUMNS,
+        "drive": len(DRIVE),
+        "force_before": sizes.contacts,
         "label": n,
         "keys": sizes.room,
         "known": 1,
@@ -160,6 +211,12 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "blocked": b,
         "first": sizes.contacts,
         "second": sizes.contacts,
+        "side": b,
+        "squeezed": n,
+        "pointed": n,
+        "going_on": KINDS,
+        "announced": KINDS,
+        "pair_before": sizes.contacts,
     }
 
 
@@ -195,6 +252,13 @@ def ints_at(kept, which, size):
     """The same of whole numbers."""
     at = kept.ints[which]
     return kept.ints[at : at + size]
+
+
+@kernel(allocates=True)
+def clear(values):
+    """All 0."""
+    for k in range(values.shape[0]):
+        values[k] = 0
 
 
 @kernel(allocates=True)
