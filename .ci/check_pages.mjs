@@ -41,6 +41,7 @@ async function look(name, size, language, theme) {
     document.body.dispatchEvent(new KeyboardEvent("keydown", { key: "i", bubbles: true }));
     return true;
   });
+  if (await page.evaluate(() => "sandboxLive" in window)) await run(page);
   if ((await page.evaluate(() => document.documentElement.lang)) !== language) fault("is in another language");
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   if (wide > 0) fault(`is ${wide} px wider than the screen`);
@@ -51,6 +52,13 @@ async function look(name, size, language, theme) {
   for (const { id, help, nodes } of violations) fault(`${id}: ${help}: ${nodes[0].html.slice(0, 120)}`);
   if (player && size === "desk" && theme === "dark") console.log(`${name}: ${await speed(page)}`);
   await page.close();
+}
+
+// A page on which a scene runs: its script for a moment, with the colours of the pressure.
+async function run(page) {
+  await page.click("#script");
+  for (const key of ["v", "v"]) await page.keyboard.press(key);
+  await page.waitForFunction(() => window.sandboxLive.panes.every((pane) => pane.count("rows") > 8), undefined, { timeout: 60000 });
 }
 
 async function speed(page) {

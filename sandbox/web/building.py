@@ -8,7 +8,7 @@ from pathlib import Path
 from core.errors import InputError
 from sandbox.files.folder import write_text
 from sandbox.web.menu import FILE, menu, way_back
-from sandbox.web.pages import Built, page
+from sandbox.web.pages import SHARE, SHARED_PACKING, SHARES, Built, page
 from sandbox.web.toolchain import kernels, scripts
 from sandbox.words import language
 from scenes import registry
@@ -43,11 +43,14 @@ def build(name: str, seeds: Sequence[int], tell: Tell = lambda _text, _share: No
     scene = registry.get(name)
     settings = scene.settings(dict(SCENES[name]))
     kinds = tuple(kind for kind in ORDER if kind in scene.packings)
+    shares = tuple(share for share in SHARES if settings.get(SHARE, share) != share)
     setups = []
     for done, seed in enumerate(seeds):
         tell(f"packing {name}", done / len(seeds))
-        setups.append(tuple(scene.build(settings, kind, seed) for kind in kinds))
-    return Built(scene, settings, kinds, tuple(seeds), tuple(setups))
+        asked = [(settings, kind) for kind in kinds]
+        asked += [({**settings, SHARE: share}, SHARED_PACKING) for share in shares]
+        setups.append(tuple(scene.build(values, kind, seed) for values, kind in asked))
+    return Built(scene, settings, kinds, tuple(seeds), shares, tuple(setups))
 
 
 def write(folder: Path, names: Sequence[str], tell: Tell, *, single: bool = False) -> list[Path]:
@@ -60,7 +63,7 @@ def write(folder: Path, names: Sequence[str], tell: Tell, *, single: bool = Fals
     shown = language.present()
     written = []
     for name in names:
-        built = build(name, SEEDS[:1] if name in ALIKE else SEEDS, tell)
+        built = build(name, SEEDS[:1] if name in ALIKE else SEEDS[:2] if single else SEEDS, tell)
         text = page(built, program, bundled, "" if single else way_back(shown))
         written.append(_write(folder / f"{name}.html", text))
     if not single:

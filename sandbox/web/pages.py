@@ -9,25 +9,35 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from sandbox.draw.theme import packing_dash
 from sandbox.draw.views import VIEWS
 from sandbox.lessons import tours
-from sandbox.player.page import about, words_of
+from sandbox.player.page import about
 from sandbox.player.pieces import as_json, asset, colours, document, marked, policy, spoken
 from sandbox.player.recording import view_of
 from sandbox.web.increment import course, curve
-from sandbox.web.increment.memory import COUNTS, FIRST_INT, PART, ROW, SIZES
+from sandbox.web.increment.memory import COLUMNS, COUNTS, FIRST_INT, PART, ROW, SAID, SIZES
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import CURVES, Blocks, laid_out
+from sandbox.web.sentences import ALL, EVENTS, Sentence, said_in
 from sandbox.web.toolchain import PAGE
 from sandbox.words import language, words
 from sandbox.words.language import available, in_each, speaking
 from scenes.scene import HAND_STRENGTH, STRONGEST, Scene, Setup, Values
 
-DRAWING = ("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "plot.js")
-SHOWN = ("kind", "skin", "shape", "area", "chains")  # what follows from shapes and forces alone
+DRAWING = (
+    *("manners.js", "unpack.js", "speak.js", "grains.js", "scenery.js", "plot.js"),
+    "legend.js",
+)
 # The window's words that the page says too.
-SAID = ("force_error", "settling", "grains_out", "hand_limit", "seed")
+SPOKEN = ("force_error", "settling", "grains_out", "hand_limit", "seed", "squeezed")
+# And of the page that plays a run.
+SHARED = (
+    *("view", "choices", "stage", "chains", "to_light", "to_dark", "increment", "events", "keys"),
+    *("letters", "noscript"),
+)
 # Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
 STEPS = {"gravity_hopper": (0, 2), "intruder": (0, 1, 2), "single_grain": (0, 1, 2)}
 REASONS = (
@@ -45,28 +55,41 @@ class Slide:
     least: float
     most: float
     step: float
-    command: tuple[str | int, ...]
+    command: tuple[str | int, ...]  # with its values: numbers, or the names of parameters
+
+    def called(self, settings: Values) -> tuple[str, list[float]]:
+        """The entry and its values."""
+        entry, *given = self.command
+        return str(entry), [float(settings[v]) if isinstance(v, str) else v for v in given]
 
 
 SLIDES = (
-    Slide(HAND_STRENGTH, 1.0, 41.0, 0.5, ("set_strength",)),
-    Slide("friction", 0.0, 1.5, 0.05, ("set_friction",)),
-    Slide("regular_poisson_ratio", 0.0, 0.95, 0.05, ("set_ratio", 0)),
-    Slide("auxetic_poisson_ratio", -0.95, -0.05, 0.05, ("set_ratio", 1)),
+    Slide(HAND_STRENGTH, 1.0, 41.0, 0.5, ("set_strength", HAND_STRENGTH)),
+    Slide("friction", 0.0, 1.5, 0.05, ("set_friction", "friction")),
+    Slide("gravity", 0.001, 0.05, 0.001, ("set_weight", "gravity", "fall")),
+    Slide("fall", 0.01, 0.3, 0.01, ("set_weight", "gravity", "fall")),
+    Slide("poisson_ratio", 0.0, 0.95, 0.05, ("set_ratios", "poisson_ratio")),
+    Slide("regular_poisson_ratio", 0.0, 0.95, 0.05, ("set_ratio", 0, "regular_poisson_ratio")),
+    Slide("auxetic_poisson_ratio", -0.95, -0.05, 0.05, ("set_ratio", 1, "auxetic_poisson_ratio")),
 )
-
-
-WEAK = Slide(HAND_STRENGTH, 0.05, 2.05, 0.05, ("set_strength",))  # of a hand that locks at less
+# Of a hand that locks at less.
+WEAK = Slide(HAND_STRENGTH, 0.05, 2.05, 0.05, ("set_strength", HAND_STRENGTH))
+SHARE, SHARES = "auxetic_fraction", (0.25, 0.5, 0.75)  # of a mixed packing
+SHARED_PACKING = "mixed"
 
 
 @dataclass(frozen=True)
 class Built:
-    """A scene with packings of several seeds: ``setups`` by seed and packing, as they are before the first increment."""
+    """A scene with packings of several seeds: ``setups`` by seed and packing, as they are before the first increment.
+
+    After those of ``packings`` come the mixed ones with the other ``shares`` of auxetic grains.
+    """
 
     scene: Scene
     settings: Values
     packings: tuple[str, ...]
     seeds: tuple[int, ...]
+    shares: tuple[float, ...]
     setups: tuple[tuple[Setup, ...], ...]
 
     @property
@@ -80,9 +103,8 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
     blocks = [
         [laid_out(built.scene, setup, built.settings) for setup in some] for some in built.setups
     ]
-    packed = b"".join(part.tobytes() for some in blocks for both in some for part in both)
     script = (
-        f'"use strict";\nconst PAGE = {as_json(about(_words))};\n'
+        f'"use strict";\nconst PAGE = {as_json(about(_words, "page_keys"))};\n'
         f"const PLURALS = [{', '.join(map(_plural, available()))}];\n"
         f"const LIVE = {as_json(_live(built, blocks))};\n"
         f"const WORKER = {as_json(scripts['worker.ts'])};\n"
@@ -103,9 +125,9 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
             "menu": menu,
             "dragged": _dragged(built, code),
             "story": _tour(built.scene, code),
-            "noscript": html.escape(words_of(code)["noscript"]),
+            "noscript": html.escape(_words(code)["noscript"]),
             "kernels": _packed(kernels),
-            "packings": _packed(packed),
+            "packings": _packed(_against_the_first(blocks)),
             "script": script,
         }
     return document((PAGE / "page.html").read_text(encoding="utf-8"), values)
@@ -144,6 +166,17 @@ def _policy(script: str) -> str:
     )
 
 
+def _against_the_first(blocks: Sequence[Sequence[Blocks]]) -> bytes:
+    """All blocks, one behind the other: what those after the first have alike with it is 0, where they are as long."""
+    parts = [[part.view(np.uint64) for part in both] for some in blocks for both in some]
+    first = parts[0]
+    return b"".join(
+        (part if both is first or len(part) != len(model) else part ^ model).tobytes()
+        for both in parts
+        for part, model in zip(both, first, strict=True)
+    )
+
+
 def _packed(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode("ascii")
 
@@ -157,6 +190,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
     strength = float(built.settings.get(HAND_STRENGTH, 1.0))
     own = setup.curve is not None  # then nobody knows yet how far it goes
     counts = CURVES.get(scene.name) == curve.GRAINS_OUT
+    said = said_in(scene.name)
     return {
         "scene": scene.name,
         "languages": available(),
@@ -167,6 +201,8 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             "row": ROW._asdict(),
             "firstInt": getattr(PART, FIRST_INT),
             "columns": PLACES,
+            "said": SAID._asdict(),
+            "sentence": COLUMNS,
         },
         "labels": {
             "force": in_each(lambda: words.say(setup.force_label)),
@@ -175,10 +211,10 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
         "title": in_each(lambda: words.title(scene.name)),
         "question": in_each(lambda: words.question(scene.name)),
         "about": in_each(lambda: words.about(scene.name)),
-        "views": [view_of(VIEWS[name], {}) for name in SHOWN],
+        "views": [view_of(view, {}) for view in VIEWS.values()],
         "packings": [
             _packing(name, setup)
-            for name, setup in zip(built.packings, built.setups[0], strict=True)
+            for name, setup in zip(built.packings, built.setups[0], strict=False)
         ],
         "seeds": built.seeds,
         "counts": counts,
@@ -194,6 +230,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             "axis": body.axis,
         },
         "sliders": sliders(scene, built.settings),
+        "share": _share(built),
         "commands": {
             "grab": course.GRAB,
             "move": course.MOVE,
@@ -202,6 +239,11 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             "scriptOff": course.SCRIPT_OFF,
         },
         "reasons": [_reason(reason) for reason in REASONS],
+        "sentences": [
+            _sentence(sentence, handle.label) if number in said else None
+            for number, sentence in enumerate(ALL)
+        ],
+        "events": EVENTS,
         "machine": STRONGEST,
         "lockedAfter": course.LOCKED_AFTER,
         "lengths": [[[ints.nbytes, floats.nbytes] for ints, floats in some] for some in blocks],
@@ -211,6 +253,10 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
 
 def _reason(reason: str) -> dict[str, Any]:
     return {"text": in_each(lambda: words.STOPPED[reason]), "level": LEVELS.get(reason, 2)}
+
+
+def _sentence(sentence: Sentence, handle: str) -> dict[str, Any]:
+    return {"text": in_each(lambda: sentence.text(handle)), "values": sentence.values}
 
 
 def _packing(name: str, setup: Setup) -> dict[str, Any]:
@@ -237,6 +283,23 @@ def sliders(scene: Scene, settings: Values) -> list[dict[str, Any]]:
     return [_slider(scene, settings, slide) for slide in SLIDES if slide.name in settings]
 
 
+def _share(built: Built) -> dict[str, Any] | None:
+    """The share of auxetic grains, as ``live.ts`` knows it."""
+    if not built.shares:
+        return None
+    begun, here = float(built.settings[SHARE]), built.packings.index(SHARED_PACKING)
+    values = sorted((begun, *built.shares))
+    others = len(built.packings)
+    return {
+        "name": SHARE,
+        "title": in_each(lambda: f"{words.parameter_name(SHARE)} · {words.REBUILDS}"),
+        "values": values,
+        "at": values.index(begun),
+        "packing": here,
+        "places": [here if v == begun else others + built.shares.index(v) for v in values],
+    }
+
+
 def _slider(scene: Scene, settings: Values, slide: Slide) -> dict[str, Any]:
     if slide.name == HAND_STRENGTH and float(settings[slide.name]) < slide.least:
         slide = WEAK
@@ -258,9 +321,12 @@ def _slider(scene: Scene, settings: Values, slide: Slide) -> dict[str, Any]:
 def _words(code: str) -> dict[str, str]:
     """All that the script says in a language."""
     table = language.table(code)
-    said = words_of(code)
-    said |= {name: table["words"][name] for name in SAID}
-    said |= {name: table["buttons"][name] for name in ("reset", "drive", "new")}
+    said = {"name": table["name"], "decimal": table["decimal"]}
+    said |= {name: table["player"][name] for name in SHARED}
+    said |= {name: table["words"][name] for name in SPOKEN}
+    said |= {name: table["buttons"][name] for name in ("reset", "undo", "drive", "new")}
+    said |= {f"event_{kind}": table["events"][kind] for kind in EVENTS}
+    said |= {f"kinds_{kind}": text for kind, text in table["kinds"].items()}
     return said
 
 

@@ -1,7 +1,8 @@
 """A scene on the desk without fast math, by the session and by the page's kernels, in a process of its own.
 
 ``python -m tests.web.exact OUT.npz SCENE PACKING SEED STEPS NAME=VALUE … [from=BLOCKS.npz]``: writes the blocks of memory as they
-are laid out, and after each increment what the session's state hashes to, what the kernels' does, and how many grains have left.
+are laid out, and after each increment what the session's state hashes to, what the kernels' does, and how many grains have left;
+what both say about it, and how far apart what both show of the grains is at most.
 
 A disc that is dragged anywhere, which pymunk moves on the desk, goes in that session where the page's rule puts it: so what is
 compared there is all of the increments but that rule.
@@ -18,7 +19,15 @@ import numpy as np
 
 from core import jit, kernel_cache
 
-Step = tuple[str, float]
+# What is set on the way, where the grains stand.
+CHANGED = {
+    "hopper": {"regular_poisson_ratio": 0.5},
+    "gravity_hopper": {"gravity": 0.02, "fall": 0.05},
+    "intruder": {"friction": 0.3},
+    "biaxial_press": {"auxetic_poisson_ratio": -0.4},
+    "grain_row": {"hand_strength": 3.0},
+    "single_grain": {"poisson_ratio": 0.3},
+}
 # Where the script begins in a scene: one that shakes now and then is about to.
 BEGUN = {"gravity_hopper": 238}
 
@@ -36,7 +45,16 @@ def commands(steps: int) -> dict[int, tuple[str, float]]:
         0: ("script", 0.0),
         steps // 2: ("move", 0.4),
         steps // 2 + 8: ("move", -3.0),
+        steps // 2 + 16: ("set", 0.0),
     }
+
+
+def entries(name: str, settings: Any) -> list[tuple[str, list[float]]]:
+    """What is called where ``CHANGED`` is set: entries of the kernels with their values."""
+    from sandbox.web.pages import SLIDES
+
+    changed = {**settings, **CHANGED[name]}
+    return [slide.called(changed) for slide in SLIDES if slide.name in CHANGED[name]]
 
 
 def by_the_rule_of_the_page() -> None:
@@ -71,13 +89,43 @@ def by_the_rule_of_the_page() -> None:
     RigidWorld._pull = pulled  # type: ignore[method-assign, assignment]
 
 
+def seen(run: Any) -> dict[str, Any]:
+    """What the desk shows of the newest increment: a number a grain each."""
+    from sandbox.session.take_frame import take
+
+    frame = take(run, False, False, (0, ""))
+    return {
+        "pressure": frame.pressure,
+        "difference": frame.stress_difference,
+        "motion": np.hypot(*(frame.motion - frame.motion.mean(axis=1)[:, None]))
+        if frame.grains
+        else np.zeros(0),
+        "squeezed": frame.squeezed,
+        "pointed": np.zeros(frame.grains) if frame.highlight is None else frame.highlight,
+    }
+
+
+def said_by(run: Any) -> str:
+    """What the desk says about the newest increment, and which events have begun in it."""
+    course, newest = run.course, len(run.history) - 1
+    events = [(e.kind, e.text) for e in run.history.events if e.increment == newest]
+    return repr(
+        (
+            [str(text) for text in (*course.notices, *course.remarks.notices)],
+            [(k, str(t)) for k, t in events],
+        )
+    )
+
+
 def main() -> None:
     without_fast_math()
     by_the_rule_of_the_page()
     from sandbox.session.run import Run
     from sandbox.web.increment import course
     from sandbox.web.increment.memory import COUNTS, ROW, Kept
+    from sandbox.web.increment.observe import observe
     from sandbox.web.laid_out import laid_out, packing_in, part, state_hash
+    from sandbox.web.sentences import told
     from scenes import registry
 
     out, name, kind, seed, steps, *given = sys.argv[1:]
@@ -96,6 +144,20 @@ def main() -> None:
     assert course.advance(kept) == 1
     session_said, kernels_said = [run.state_hash()], [state_hash(blocks)]
     left, shares, curve = [0], [1.0], []
+    said: list[tuple[str, str]] = []
+    apart = dict.fromkeys(("pressure", "difference", "motion", "squeezed", "pointed"), 0.0)
+
+    def look() -> None:
+        observe(kept)
+        said.append((said_by(run), repr(told(blocks, setup.handles[0].label))))
+        for what, there in seen(run).items():
+            here = part(blocks, what, len(there))
+            off = float(np.max(np.abs(here - np.asarray(there, dtype=np.float64)), initial=0.0))
+            apart[what] = max(
+                apart[what], off / max(float(np.max(np.abs(there), initial=0.0)), 1.0)
+            )
+
+    look()
     body = setup.handles[0].body
     driven, direction = setup.world.index(body), setup.handles[0].direction
     for step in range(int(steps)):
@@ -112,9 +174,14 @@ def main() -> None:
             run.hands.move(body, (x, y))
             course.command(kept, course.GRAB, driven, 0.0, 0.0)
             course.command(kept, course.MOVE, driven, x, y)
+        elif what == "set":
+            run.adjust({**settings, **CHANGED[name]}, frozenset(CHANGED[name]))
+            for entry, values in entries(name, settings):
+                getattr(course, entry)(kept, *values)
         while not run.idle and not run.advance(1000):
             pass
-        course.advance(kept)
+        if course.advance(kept):
+            look()
         session_said.append(run.state_hash())
         kernels_said.append(state_hash(blocks))
         left.append(int(part(blocks, "counts", len(COUNTS))[COUNTS.out]))
@@ -131,6 +198,8 @@ def main() -> None:
         left=left,
         shares=shares,
         curve=curve,
+        said=said,
+        apart=list(apart.values()),
     )
 
 

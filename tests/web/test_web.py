@@ -23,14 +23,16 @@ from core.errors import InputError
 from sandbox.lessons import tours
 from sandbox.web import building
 from sandbox.web.host import Host
-from sandbox.web.increment import course
+from sandbox.web.increment import course, remarks
 from sandbox.web.increment.memory import COUNTS, ROW, Kept
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
 from sandbox.web.menu import menu
 from sandbox.web.pages import SLIDES, STEPS, sliders
+from sandbox.web.sentences import ALL, said_in
+from sandbox.words import language
 from scenes import registry
-from tests.web.exact import BEGUN, commands
+from tests.web.exact import BEGUN, CHANGED, commands, entries
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -119,11 +121,51 @@ def test_the_runs_show_what_they_are_for(exact: dict[Run, Any]) -> None:
 
 
 @pytest.mark.parametrize("run", RUNS)
+def test_kernels_say_and_show_what_the_desk_does(exact: dict[Run, Any], run: Run) -> None:
+    said = exact[run]
+    for desk, kernels in said["said"]:
+        assert kernels == desk
+    assert max(said["apart"]) < 1e-12
+
+
+def test_the_runs_have_much_to_say(exact: dict[Run, Any]) -> None:
+    said = {run: " ".join(desk for desk, _ in exact[run]["said"]) for run in RUNS}
+    for kind in ("locked", "arch", "clog"):
+        assert f"('{kind}', " in said["hopper", "regular"], kind
+    assert "('avalanche', " in said["intruder", "regular"]
+    assert "all the hand has" in said["intruder", "regular"]
+    assert "flowing" in said["gravity_hopper", "mixed"]
+    assert "end of travel" in said["gravity_hopper", "mixed"]
+    assert "sideways: " in said["grain_row", "mixed"]
+    assert "Poisson's ratio" in said["single_grain", "mixed"]
+
+
+def test_every_sentence_has_its_words_and_its_scene() -> None:
+    assert len(ALL) == remarks.AUXETIC_STRAINS_AND_RATIO + 1
+    for code in language.available():
+        with language.speaking(code):
+            for sentence in ALL:
+                text = sentence.text("piston")
+                values = dict.fromkeys(sentence.values, 3)
+                assert "{" not in language.Word(text).format(**values), (code, text)
+    everything = frozenset().union(*(said_in(name) for name in building.SCENES))
+    assert everything == frozenset(range(len(ALL)))
+
+
+def test_every_slider_that_acts_where_grains_stand_is_tried() -> None:
+    assert set(CHANGED) == set(building.SCENES)
+    tried = {name for changed in CHANGED.values() for name in changed}
+    assert {slide.command[0] for slide in SLIDES if slide.name in tried} | {"set_ratio"} == {
+        slide.command[0] for slide in SLIDES
+    }
+
+
+@pytest.mark.parametrize("run", RUNS)
 def test_webassembly_gives_the_bits_of_the_desk(
     exact: dict[Run, Any], program: Path, run: Run
 ) -> None:
     said = exact[run]
-    assert first_differing(said["session"], replayed(program, said, BEGUN.get(run[0], 0))) == -1
+    assert first_differing(said["session"], replayed(program, said, run[0])) == -1
 
 
 def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
@@ -148,7 +190,7 @@ def direction_of(said: dict[str, Any]) -> tuple[float, float]:
     return float(row[ROW.direction_x]), float(row[ROW.direction_y])
 
 
-def replayed(program: Path, said: dict[str, Any], begun: int) -> list[str]:
+def replayed(program: Path, said: dict[str, Any], name: str) -> list[str]:
     """The same commands to the compiled kernels: hashes after each increment."""
     host, driven = started(program, said)
     hashes = [state_hash(host.blocks())]
@@ -158,10 +200,14 @@ def replayed(program: Path, said: dict[str, Any], begun: int) -> list[str]:
         if what == "script":
             host.call("command", course.SCRIPT_ON, driven, 0.0, 0.0)
             blocks = host.blocks()
-            part(blocks, "counts", len(COUNTS))[COUNTS.script] = begun
+            part(blocks, "counts", len(COUNTS))[COUNTS.script] = BEGUN.get(name, 0)
             host.write(blocks)
         elif what == "move":
             moved_by(host, driven, where, direction_of(said))
+        elif what == "set":
+            settings = registry.get(name).settings(dict(building.SCENES[name]))
+            for entry, values in entries(name, settings):
+                host.call(entry, *values)
         host.call("advance")
         hashes.append(state_hash(host.blocks()))
     return hashes
@@ -267,26 +313,26 @@ def test_the_page_computes_no_forces() -> None:
 
 @pytest.fixture(scope="session")
 def tried(program: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """What the page of the hopper does in a browser."""
+    """What the pages do in a browser."""
     if CHROMIUM is None or shutil.which("npm") is None:
         pytest.skip("without Chromium or npm: no page can be tried")
-    folder = tmp_path_factory.mktemp("page")
-    (path,) = building.write(folder, ["hopper"], lambda _text, _share: None, single=True)
+    pages, folder = tmp_path_factory.mktemp("pages"), tmp_path_factory.mktemp("node")
+    building.write(pages, list(building.SCENES), lambda _text, _share: None)
     for name in ("package.json", "package-lock.json"):
         shutil.copyfile(PAGE / name, folder / name)
     subprocess.run(
         ["npm", "ci", "--no-audit", "--no-fund"], cwd=folder, check=True, capture_output=True
     )
     done = subprocess.run(
-        ["node", str(HERE / "try_page.mjs"), str(path), str(folder)],
+        ["node", str(HERE / "try_page.mjs"), str(pages), str(folder)],
         env={**os.environ, "CHROMIUM": CHROMIUM},
         capture_output=True,
         text=True,
         check=True,
-        timeout=900,
+        timeout=1800,
     )
     found: dict[str, Any] = json.loads(done.stdout)
-    return found | {"size": path.stat().st_size}
+    return found
 
 
 def blocks_of(said: dict[str, list[str]]) -> Blocks:
@@ -295,9 +341,14 @@ def blocks_of(said: dict[str, list[str]]) -> Blocks:
     return ints, floats.view(np.float64)
 
 
-def test_a_page_asks_for_nothing_and_says_nothing(tried: dict[str, Any]) -> None:
+def test_the_pages_ask_for_nothing_say_nothing_and_are_open_to_all(tried: dict[str, Any]) -> None:
     assert tried["faults"] == []
-    assert tried["size"] <= building.SINGLE
+    assert set(tried["others"]) == set(building.SCENES)
+
+
+def test_a_single_page_is_small(program: Path, tmp_path: Path) -> None:
+    (path,) = building.write(tmp_path, ["hopper"], lambda _text, _share: None, single=True)
+    assert path.stat().st_size <= building.SINGLE
 
 
 def test_in_the_page_the_regular_hopper_locks_and_the_auxetic_one_flows(
@@ -310,8 +361,30 @@ def test_in_the_page_the_regular_hopper_locks_and_the_auxetic_one_flows(
     assert auxetic["stroke"] > regular["stroke"]
 
 
-def test_a_reset_is_the_start_to_the_last_bit(tried: dict[str, Any]) -> None:
+def test_the_page_says_what_happens(tried: dict[str, Any]) -> None:
+    regular = dict(map(tuple, tried["dragged"][0]["events"]))
+    assert set(regular) >= {"locked", "arch", "clog"}
+    assert re.fullmatch(r"locked at 8 k R: an arch of \d grains holds", regular["locked"])
+    assert tried["told"][0].startswith(f"regular {regular['locked']}")
+    assert any(line.startswith("regular · increment ") for line in tried["events"])
+    for line in tried["events"]:
+        assert "{" not in line
+        assert "NaN" not in line
+
+
+def test_a_page_in_use_sets_undoes_and_resets(tried: dict[str, Any]) -> None:
+    assert tried["softer"][0]["ratios"] == [0.6]
+    assert tried["softer"][0]["rows"] > tried["dragged"][0]["rows"]
     assert tried["again"] == tried["first"]
+    for name, seen in tried["others"].items():
+        played, pulled = ([pane["rows"] for pane in seen[when]] for when in ("played", "pulled"))
+        assert min(played) > 4, name
+        assert min(more - rows for rows, more in zip(played, pulled, strict=True)) > 4, name
+        assert seen["back"] == seen["before"], name
+        assert any(0.6 in pane["ratios"] for pane in seen["softer"]), name
+        assert seen["end"] == seen["start"], name
+        if seen["shares"]:
+            assert seen["shares"][1] == pytest.approx(0.75, abs=0.05), name
 
 
 @pytest.mark.parametrize(("kind", "place"), [("regular", 0), ("auxetic", 2)])

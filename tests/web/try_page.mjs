@@ -1,63 +1,110 @@
-// The page of the hopper in Chromium: node tests/web/try_page.mjs PAGE.html FOLDER [PICTURE.png]
+// The pages in Chromium: node tests/web/try_page.mjs PAGES FOLDER [PICTURES]
 //
-// FOLDER has node_modules with playwright-core. Prints what it found as JSON: the blocks of memory as they are, and what was seen on the way.
+// PAGES has the menu and the page of every scene, FOLDER node_modules with playwright-core and axe-core. Goes from the menu to the
+// hopper, drags, sets and resets there, and does in short the same on every other page. Prints what it found as JSON: blocks of memory as
+// they are or their hashes, and what was seen on the way. `faults` are messages, requests, and what axe-core has to say.
 
 import { createHash } from "node:crypto";
+import { readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [file, folder, picture] = process.argv.slice(2);
-const { chromium } = createRequire(join(resolve(folder), "package.json"))("playwright-core");
+const [pages, folder, pictures] = process.argv.slice(2);
+const require = createRequire(join(resolve(folder), "package.json"));
+const { chromium } = require("playwright-core");
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
 const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
-const faults = [];
 const STEPS = 60;
-page.on("console", (message) => faults.push(message.text()));
-page.on("pageerror", (error) => faults.push(String(error)));
+const faults = [];
+let where = "menu";
+const fault = (text) => faults.push(`${where}: ${text}`);
+page.on("console", (message) => fault(message.text()));
+page.on("pageerror", (error) => fault(String(error)));
 page.on("request", (request) => {
-  if (!/^(file|data|blob):/.test(request.url())) faults.push(`asks for ${request.url()}`);
+  if (!/^(file|data|blob):/.test(request.url())) fault(`asks for ${request.url()}`);
 });
-await page.goto(pathToFileURL(file).href);
-await page.waitForSelector("html[data-ready]");
-const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready));
+page.setDefaultTimeout(180000);
 
-// Everything has come to rest.
+const address = (name) => pathToFileURL(join(resolve(pages), name)).href;
+const hash = ({ ints, floats }) => createHash("sha256").update(ints.join() + floats.join()).digest("hex");
+const written = (ints, floats) => ({ ints: Array.from(new BigInt64Array(ints), String), floats: Array.from(new BigUint64Array(floats), String) });
+const look = (read) => page.evaluate(`window.sandboxLive.panes.map((pane) => (${read})(pane))`);
+
+// Everything has come to rest, or waits for the test.
 const settled = () => page.waitForFunction(() => {
   const { conductor, panes } = window.sandboxLive;
-  return !conductor.busy && conductor.idle && panes.every((pane) => pane.seen);
-}, undefined, { timeout: 120000 });
-const written = (ints, floats) => ({ ints: Array.from(new BigInt64Array(ints), String), floats: Array.from(new BigUint64Array(floats), String) });
-const laid = await page.evaluate(`window.sandboxLive.blocks().map(([ints, floats]) => (${written})(ints, floats))`);
-const hashes = async () => {
+  return !conductor.busy && (conductor.idle || conductor.turns >= conductor.most) && panes.every((pane) => pane.seen);
+});
+// So many turns and no more.
+async function turns(count) {
+  await page.evaluate((more) => {
+    const { conductor } = window.sandboxLive;
+    conductor.most = conductor.turns + (conductor.busy ? 1 : 0) + more;
+  }, count);
+  await settled();
+}
+async function dumps() {
   const found = [];
-  for (let pane = 0; pane < 3; pane++) {
-    const dump = await page.evaluate(async (at) => {
+  for (let pane = 0; pane < (await look("() => 0")).length; pane++) {
+    found.push(await page.evaluate(`(async (at) => {
       const { ints, floats, memory } = await window.sandboxLive.conductor.dump(at);
-      return { memory, ints: Array.from(new BigInt64Array(ints), String), floats: Array.from(new BigUint64Array(floats), String) };
-    }, pane);
-    found.push({ memory: dump.memory, ints: dump.ints, floats: dump.floats });
+      return { memory, ...(${written})(ints, floats) };
+    })(${pane})`));
   }
   return found;
-};
-const stand = () => page.evaluate(() => window.sandboxLive.panes.map((pane) => ({
-  ...{ stroke: pane.row("stroke"), force: pane.row("resisting"), out: pane.count("out"), rows: pane.count("rows") },
-  ...{ locked: pane.locked, residual: pane.row("residual") },
-})));
+}
+const hashes = async () => (await dumps()).map(hash);
+const stand = () => look(`(pane) => ({
+  ...{ stroke: pane.row("stroke"), force: pane.row("resisting"), out: pane.count("out"), rows: pane.count("rows"), locked: pane.locked },
+  ...{ ratios: [...new Set(pane.seen.grains.nu)], events: pane.shown.events.map(({ kind, text }) => [kind, text()]) },
+})`);
 
+// Take the first handle by the mouse, so far to the right and up [R], and hold it there.
+async function drag(right, up) {
+  const [x, y, k, box] = await page.evaluate(() => {
+    const pane = window.sandboxLive.panes[0];
+    const { left, top, width, height } = pane.canvas.getBoundingClientRect();
+    const ratio = pane.canvas.width / width;
+    const [hx, hy] = pane.shown.handles[0].at;
+    const at = [left + (pane.camera.x + pane.camera.k * hx) / ratio, top + (pane.camera.y - pane.camera.k * hy) / ratio];
+    return [...at, pane.camera.k / ratio, { right: left + width, bottom: top + height }];
+  });
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(Math.min(x + right * k, box.right - 1), Math.min(y - up * k, box.bottom - 1), { steps: 8 });
+}
+
+// A slider by the keyboard, so many steps.
+async function set(name, steps) {
+  await page.focus(`#slider-${name}`);
+  for (let k = 0; k < Math.abs(steps); k++) await page.keyboard.press(steps < 0 ? "ArrowLeft" : "ArrowRight");
+  await page.evaluate(() => document.activeElement.blur());
+}
+
+async function check() {
+  await page.evaluate(`${axe};0`);
+  const { violations } = await page.evaluate(() => window.axe.run());
+  for (const { id, help, nodes } of violations) fault(`${id}: ${help}: ${nodes[0].html.slice(0, 120)}`);
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  if (wide > 0) fault(`is ${wide} px wider than the screen`);
+  if (pictures) await page.screenshot({ path: join(pictures, `${where}.png`) });
+}
+
+// -- from the menu to the hopper --
+
+await page.goto(address("index.html"));
+await page.waitForSelector("html[data-ready]");
+await check();
+await page.click('a[href*="/hopper.html"]');
+where = "hopper";
+await page.waitForSelector("html[data-ready]");
+const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready));
+const laid = await page.evaluate(`window.sandboxLive.blocks().map(([ints, floats]) => (${written})(ints, floats))`);
 await settled();
 const first = await hashes();
-// Drag the first handle down, and keep it down.
-const [x, y, k, height] = await page.evaluate(() => {
-  const pane = window.sandboxLive.panes[0];
-  const box = pane.canvas.getBoundingClientRect();
-  const ratio = pane.canvas.width / box.width;
-  const [hx, hy] = pane.shown.handles[0].at;
-  return [box.left + (pane.camera.x + pane.camera.k * hx) / ratio, box.top + (pane.camera.y - pane.camera.k * hy) / ratio, pane.camera.k / ratio, box.height];
-});
-await page.mouse.move(x, y);
-await page.mouse.down();
-await page.mouse.move(x, Math.min(y + 10 * k, y + height / 2), { steps: 8 });
+await drag(0, -10); // down, and keep it there
 const rate = await page.evaluate(async () => {
   const { conductor, pictures, panes } = window.sandboxLive;
   const [count, turns, spent, since] = [pictures.count, conductor.turns, conductor.spent, performance.now()];
@@ -71,29 +118,80 @@ const rate = await page.evaluate(async () => {
   };
 });
 await settled();
-if (picture) await page.screenshot({ path: picture });
 await page.mouse.up();
 await settled();
 const dragged = await stand();
+const told = await page.$$eval("#told p", (lines) => lines.map((line) => line.textContent));
+const events = await page.$$eval("#events li", (lines) => lines.map((line) => line.textContent));
+await check();
+await set("regular_poisson_ratio", -4);
+await settled();
+const softer = await stand();
+await set("regular_poisson_ratio", 4);
 await page.keyboard.press("r");
 await page.waitForFunction(() => window.sandboxLive.panes.every((pane) => pane.count("rows") === 1));
 await settled();
-const again = await hashes();
+const again = await dumps();
 // The script, so many increments far.
 await page.evaluate((steps) => {
   const { conductor, hand } = window.sandboxLive;
   conductor.most = conductor.turns + steps;
   hand("scriptOn");
 }, STEPS);
-await page.waitForFunction((rows) => window.sandboxLive.panes.every((pane) => pane.count("rows") === rows), STEPS + 1, { timeout: 120000 });
-await page.waitForFunction(() => !window.sandboxLive.conductor.busy);
-const driven = await hashes();
+await page.waitForFunction((rows) => window.sandboxLive.panes.every((pane) => pane.count("rows") === rows), STEPS + 1);
+await settled();
+const driven = await dumps();
+await page.evaluate(() => (window.sandboxLive.conductor.most = Infinity));
+
+// -- every other page, in short --
+
+async function tried(name) {
+  where = name;
+  await page.goto(address(`${name}.html`));
+  await page.waitForSelector("html[data-ready]");
+  await turns(0);
+  await page.keyboard.press("r");
+  await turns(1);
+  const start = await hashes();
+  await page.click("#script");
+  await turns(6);
+  const played = await stand();
+  const before = await hashes();
+  await drag(2, -2);
+  await turns(6);
+  await page.mouse.up();
+  await turns(1);
+  const pulled = await stand();
+  await page.keyboard.press("z");
+  await turns(1);
+  const back = await hashes();
+  const ratio = (await page.$("#slider-poisson_ratio")) ? "poisson_ratio" : "regular_poisson_ratio";
+  await set(ratio, -4);
+  await turns(3);
+  const softer = await stand();
+  await set(ratio, 4);
+  for (const key of ["h", "v", "v", "t", "l"]) await page.keyboard.press(key);
+  await turns(1);
+  await check();
+  await page.keyboard.press("r");
+  await turns(1);
+  const end = await hashes();
+  let shares = null;
+  if (await page.$("#slider-auxetic_fraction")) {
+    await set("auxetic_fraction", 1);
+    await turns(2); // it is loaded, and relaxed
+    shares = await look("(pane) => pane.seen.grains.nu.filter((ratio) => ratio < 0).length / pane.seen.label.length");
+  }
+  return { start, played, pulled, before, back, softer, end, shares };
+}
+
+const others = {};
+for (const name of readdirSync(pages).filter((name) => name.endsWith(".html")).map((name) => name.slice(0, -5))) {
+  if (name !== "index") others[name] = await tried(name);
+}
 await browser.close();
-const hash = ({ ints, floats }) => createHash("sha256").update(ints.join() + floats.join()).digest("hex");
 console.log(JSON.stringify({
-  ...{ ready, faults, rate, dragged, memory: again.map(({ memory }) => memory) },
-  first: first.map(hash),
-  again: again.map(hash),
-  laid,
+  ...{ ready, faults, rate, dragged, told, events, softer, memory: again.map(({ memory }) => memory), others },
+  ...{ first, again: again.map(hash), laid },
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));

@@ -7,13 +7,13 @@ export class Conductor {
   private workers: Worker[] = [];
   private waiting: Command[] = [];
   private answers = 0;
-  private resetting: Command[] | null = null;
   private dumps: ((dump: Extract<FromWorker, { kind: "dump" }>) => void)[] = [];
   busy = true;
   idle = false;
   turns = 0;
   most = Infinity; // turns after which it waits, for tests
   spent = 0; // [ms] in kernels, all workers together
+  private since = 0;
 
   constructor(
     private readonly live: Live,
@@ -23,12 +23,11 @@ export class Conductor {
   ) {}
 
   // Begin with other packings.
-  begin(module: WebAssembly.Module, blocks: [ArrayBuffer, ArrayBuffer][], settings: Command[]) {
+  begin(module: WebAssembly.Module, blocks: ArrayBuffer[][], settings: Command[]) {
     for (const worker of this.workers) worker.terminate();
     const address = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
     this.waiting = settings;
-    this.resetting = null;
-    this.busy = true;
+    this.begun();
     this.answers = blocks.length;
     this.workers = blocks.map(([ints, floats], pane) => {
       const worker = new Worker(address);
@@ -47,21 +46,21 @@ export class Conductor {
     this.idle = false;
   }
 
-  reset(settings: Command[]) {
-    this.waiting = [];
-    this.resetting = settings;
-    this.idle = false;
+  // Is there a command that no packing has been given yet?
+  get asked(): boolean {
+    return this.waiting.length > 0;
+  }
+
+  // How long the present increment has taken so far [ms].
+  get waited(): number {
+    return this.busy ? performance.now() - this.since : 0;
   }
 
   // The next increment, once all are done with this one.
   turn() {
     if (this.busy || this.idle || this.turns >= this.most) return;
-    const message: ToWorker = this.resetting
-      ? { kind: "reset", commands: this.resetting }
-      : { kind: "turn", commands: this.waiting };
-    if (!this.resetting) this.waiting = [];
-    this.resetting = null;
-    this.busy = true;
+    const message: ToWorker = { kind: "turn", commands: this.waiting.splice(0, this.atOnce()) };
+    this.begun();
     this.idle = true; // unless somebody has made an increment
     this.answers = this.workers.length;
     for (const worker of this.workers) this.post(worker, message);
@@ -71,6 +70,18 @@ export class Conductor {
   dump(pane: number): Promise<Extract<FromWorker, { kind: "dump" }>> {
     this.post(this.workers[pane], { kind: "dump" });
     return new Promise((resolve) => this.dumps.push(resolve));
+  }
+
+  // How many of the commands that wait are for the next increment: a place that is let go at once still has one to be reached in.
+  private atOnce(): number {
+    const { move, release } = this.live.commands;
+    const at = (kind: number) => this.waiting.findIndex(([name, first]) => name === "command" && first === kind);
+    return at(move) >= 0 && at(move) < at(release) ? at(release) : this.waiting.length;
+  }
+
+  private begun() {
+    this.busy = true;
+    this.since = performance.now();
   }
 
   private post(worker: Worker, message: ToWorker) {
@@ -97,7 +108,7 @@ export class Conductor {
     }
     if (--this.answers) return;
     this.busy = false;
-    if (this.waiting.length || this.resetting) this.idle = false;
+    if (this.asked) this.idle = false;
     this.turns++;
     this.finished();
   }

@@ -11,7 +11,17 @@ export interface Slider {
   step: number;
   value: number;
   top: string[] | null; // what the highest value is called
-  command: (string | number)[]; // and the value behind it
+  command: (string | number)[]; // an entry of the kernels with its values: numbers, or what sliders of these names are set to
+}
+
+// A share of auxetic grains that is chosen from some; another one packs anew.
+export interface Share {
+  name: string;
+  title: string[];
+  values: number[];
+  at: number; // the place of that which it begins with
+  packing: number; // that it is about
+  places: number[]; // of the packings with these shares, among all of a seed
 }
 
 export interface Packing {
@@ -39,8 +49,11 @@ export interface Live {
   axes: [number, number]; // highest stroke [R] and force [k R] that the plot begins with
   handle: { body: number; label: string[]; axis: [number, number] | null };
   sliders: Slider[];
+  share: Share | null;
   commands: Record<string, number>; // kinds of the entry `command`
   reasons: { text: string[]; level: number }[]; // why a relaxation ended
+  sentences: ({ text: string[]; values: string[] } | null)[]; // what is said, and what its numbers are called
+  events: string[]; // kinds
   machine: number; // a hand without bound [k R]
   lockedAfter: number;
   lengths: [ints: number, floats: number][][]; // bytes of the blocks, by seed and packing

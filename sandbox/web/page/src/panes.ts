@@ -1,6 +1,7 @@
 // Packings side by side: canvases, and what is said above each.
 
 import type { Live, Packing } from "./live";
+import { told, type Told } from "./sentences";
 import type { Seen } from "./shared";
 
 export const $ = <Kind extends HTMLElement>(id: string) => document.getElementById(id) as Kind;
@@ -16,6 +17,8 @@ export function setText(node: HTMLElement, text: string) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+const FRESH = 40; // increments for which an event is spoken of
+
 export class Pane {
   readonly canvas = element("canvas");
   readonly shown: PlayerPane;
@@ -27,8 +30,13 @@ export class Pane {
   private readonly value = element("span", "value");
   private readonly lamp = element("span", "lamp");
   private readonly said = element("span", "said");
-  private readonly foot = element("p", "foot");
+  private readonly told = element("p", "clamped");
   private readonly swatch = element("span", "swatch");
+  private sentences: Told[] = [];
+  private unheard: PlayerEvent[] = [];
+  private lags = false;
+  back: PlayerTrack | null = null; // what the curve was at a state that is asked for
+  went = true; // has it gone back?
 
   constructor(private readonly live: Live, readonly index: number) {
     const { name, title, dash, bounds } = live.packings[index];
@@ -37,7 +45,7 @@ export class Pane {
     this.shown = {
       ...{ packing: name, title, moments: 1, count: 0, labels: [], there: [], pointed: [], squeezed: [] },
       ...{ x: none, y: none, p: none, q1: none, q2: none, rest: none, nu: none, spin: none, rubs: false, box: null },
-      ...{ i: [], j: [], pairs: 0, withBodies: 0, bearing: none, dx: none, dy: none, active: [new Uint32Array()] },
+      ...{ pressure: none, stress: none, motion: none, i: [], j: [], pairs: 0, withBodies: 0, bearing: none, dx: none, dy: none, active: [new Uint32Array()] },
       ...{ bodies: [], handles: [], bounds, stroke: [], force: [], at: [0], counts: live.counts, events: [] },
       look: { colour: packings[name].colour, dash },
     };
@@ -45,7 +53,8 @@ export class Pane {
     const first = element("div", "row", this.swatch, this.name, this.value);
     const strip = element("figcaption", "", first, element("div", "row", this.lamp, this.said));
     const body = element("div", "canvas", this.canvas);
-    $("stage").append(element("figure", "", strip, body, this.foot));
+    $("stage").append(element("figure", "", strip, body));
+    $("told").append(this.told);
     this.swatch.style.background = css(this.shown.look.colour);
   }
 
@@ -63,7 +72,6 @@ export class Pane {
 
   // What an increment has come to: into the form that the player's drawing knows.
   take(seen: Seen) {
-    const wasLocked = this.locked;
     this.seen = seen;
     const { shown, live } = this;
     const n = seen.label.length;
@@ -72,23 +80,68 @@ export class Pane {
     const grain = (k: number) => seen.first[contacts - withBodies + k];
     Object.assign(shown, seen.grains, {
       ...{ count: n, labels: seen.label, there: new Uint8Array(n).fill(1) },
-      ...{ pointed: new Uint8Array(n), squeezed: new Uint8Array(n), rubs: seen.grains.spin.some((angle) => angle !== 0) },
+      ...{ pressure: seen.pressure, stress: seen.stress, motion: seen.motion },
+      ...{ pointed: seen.pointed, squeezed: seen.squeezed, rubs: seen.grains.spin.some((angle) => angle !== 0) },
       ...{ i: seen.first, j: seen.second, pairs: contacts, withBodies, bearing: seen.force },
       dx: seen.endX.map((x, k) => x - seen.grains.x[grain(k)]),
       dy: seen.endY.map((y, k) => y - seen.grains.y[grain(k)]),
       active: [Uint32Array.from(seen.first.keys())],
       bodies: live.packings[this.index].bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns))),
     });
-    if (this.count("rows") === 1) {
-      shown.stroke = [];
-      shown.force = [];
-      shown.events = [];
-    }
-    shown.stroke.push(this.row("stroke"));
-    shown.force.push(this.row("resisting"));
+    this.sentences = told(live, seen.said);
+    if (seen.back) this.goBack();
+    else this.goOn();
     shown.at = [shown.stroke.length - 1];
-    if (this.locked && !wasLocked) shown.events.push({ kind: "locked", stroke: this.row("stroke"), force: this.row("resisting") });
     this.hold();
+  }
+
+  private goOn() {
+    const { shown } = this;
+    const place = { stroke: this.row("stroke"), force: this.row("resisting"), increment: this.count("rows") - 1 };
+    if (place.increment === 0) {
+      Object.assign(shown, { stroke: [], force: [], events: [] });
+      this.went = true;
+    }
+    shown.stroke.push(place.stroke);
+    shown.force.push(place.force);
+    const begun = this.sentences.filter(({ event }) => event).map(({ event, text }) => ({ ...place, kind: event, text }));
+    shown.events.push(...begun);
+    this.unheard.push(...begun);
+  }
+
+  private goBack() {
+    const { shown, back } = this;
+    const rows = this.count("rows");
+    if (back) {
+      Object.assign(shown, { stroke: back.stroke.slice(0, rows), force: back.force.slice(0, rows) });
+      shown.events = back.events.filter((event) => event.increment < rows);
+    }
+    this.back = null;
+    this.went = true;
+  }
+
+  // The curve so far, to come back to: it only grows, or another one begins.
+  track(): PlayerTrack {
+    const { stroke, force, events } = this.shown;
+    return { stroke, force, events };
+  }
+
+  // What has begun since somebody has asked, for who does not see it.
+  news(): string[] {
+    const said = this.unheard.map((event) => `${this.title}: ${event.text()}`);
+    this.unheard = [];
+    return said;
+  }
+
+  // Does an increment keep a person waiting?
+  lag(lags: boolean) {
+    if (lags === this.lags) return;
+    this.lags = lags;
+    this.tell();
+  }
+
+  get title(): string {
+    return say(this.shown.title);
   }
 
   // The handle, where it is and where it is wanted.
@@ -110,15 +163,23 @@ export class Pane {
     this.tell();
   }
 
-  private tell() {
+  tell() {
     const reason = this.live.reasons[this.count("reason")];
-    setText(this.name, say(this.shown.title));
+    setText(this.name, this.title);
     setText(this.value, this.valuesSaid().join(" · "));
-    const balance = word("force_error", { error: `${short(Number((100 * this.row("residual")).toPrecision(2)))} %` });
+    const within = 100 * Math.max(this.row("residual"), 1e-6);
+    const balance = word("force_error", { error: `${short(Number(within.toPrecision(2)))} %` });
     // That it has settled is said by how well; there is no room for both beside other packings.
-    setText(this.said, !this.seen ? word("settling") : reason.level ? say(reason.text) : balance);
-    this.lamp.className = `lamp ${["good", "working", "bad"][this.seen ? reason.level : 1]}`;
-    setText(this.foot, this.locked ? word("event_locked") : "");
+    const waits = !this.seen || this.lags;
+    setText(this.said, waits ? word("settling") : reason.level ? say(reason.text) : balance);
+    this.lamp.className = `lamp ${["good", "working", "bad"][waits ? 1 : reason.level]}`;
+    const notices = this.notices();
+    if (this.told.dataset.notices !== notices + this.title) {
+      this.told.dataset.notices = notices + this.title;
+      const name = element("strong");
+      name.textContent = LIVE.packings.length > 1 && notices ? `${this.title} ` : "";
+      this.told.replaceChildren(name, notices);
+    }
     this.canvas.setAttribute("aria-label", this.standing());
   }
 
@@ -137,10 +198,23 @@ export class Pane {
     return count ? word("grains_out", { count }) : "";
   }
 
+  private squeezedSaid(): string {
+    const count = Array.from(this.shown.squeezed).filter((squeezed) => squeezed).length;
+    return count ? word("squeezed", { count }) : "";
+  }
+
+  // What is said of the latest increment, or else of an event that has just been.
+  private notices(): string {
+    const shown = this.sentences.filter((sentence) => sentence.shown).map((sentence) => sentence.text());
+    const latest = this.shown.events.at(-1);
+    if (!shown.length && latest && this.count("rows") - 1 - latest.increment < FRESH) shown.push(latest.text());
+    return [...shown, this.squeezedSaid()].filter(Boolean).join(" · ");
+  }
+
   // For who does not see the picture.
   standing(): string {
-    const parts = [...this.valuesSaid(), ...(this.locked ? [word("event_locked")] : [])];
-    return `${say(this.shown.title)}: ${parts.join(", ") || word("settling")}`;
+    const parts = [...this.valuesSaid(), this.notices()].filter(Boolean);
+    return `${this.title}: ${parts.join(", ") || word("settling")}`;
   }
 }
 

@@ -29,6 +29,21 @@ interface PlayerCamera {
   y: number;
 }
 
+interface PlayerEvent {
+  kind: string;
+  stroke: number;
+  force: number;
+  increment: number;
+  text: () => string; // in the present language
+}
+
+// What there is of a run besides its grains.
+interface PlayerTrack {
+  stroke: number[];
+  force: number[];
+  events: PlayerEvent[];
+}
+
 // A packing at one moment, as `Scenery` and `Plot` know it.
 interface PlayerPane {
   packing: string;
@@ -54,6 +69,9 @@ interface PlayerPane {
   pairs: number;
   withBodies: number;
   bearing: Float64Array;
+  pressure: ArrayLike<number>;
+  stress: ArrayLike<number>;
+  motion: ArrayLike<number>;
   dx: Float64Array;
   dy: Float64Array;
   active: Uint32Array[];
@@ -64,7 +82,7 @@ interface PlayerPane {
   force: number[];
   at: number[];
   counts: boolean;
-  events: { kind: string; stroke: number; force: number }[];
+  events: PlayerEvent[];
   look: { colour: number; dash: number[] };
 }
 
@@ -83,6 +101,7 @@ interface PlayerRun {
   views: PlayerView[];
   tops: { chains: number; hand: number };
   words: Record<string, string>[];
+  keys: [key: string, does: string][][];
   [name: string]: unknown;
 }
 
@@ -101,6 +120,11 @@ declare function themeAsked(auto: boolean, otherwise: string): string;
 declare function languageAsked(auto: boolean, languages: string[], otherwise: string): number;
 declare function topOf(view: PlayerView, panes: PlayerPane[]): number;
 declare function labelParts(label: string): [name: string, unit: string];
+declare function decimalsFor(spread: number): number;
+declare function signOf(event: KeyboardEvent): string;
+declare function legendOf(panes: PlayerPane[], view: PlayerView, theme: string, chains: boolean): HTMLElement[];
+declare function shapeOfEvent(kind: string): SVGElement;
+declare const PLURALS: ((count: number) => number)[];
 declare const FINER: number[];
 
 declare class Scenery {
@@ -110,7 +134,7 @@ declare class Scenery {
 
 declare class Plot {
   constructor(canvas: HTMLCanvasElement, seek: (moment: number) => void);
-  known?: { low: number; high: number; bottom: number; top: number };
+  known: { low: number; high: number; bottom: number; top: number };
   key?: string;
   draw(moment: number, look: PlayerLook): void;
 }

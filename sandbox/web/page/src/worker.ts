@@ -1,6 +1,6 @@
 // One packing: hands commands to the kernels, asks for increments, and copies what there is to be seen. It computes nothing itself.
 
-import type { Command, FromWorker, Layout, Seen, ToWorker } from "./shared";
+import { MARKS, type Command, type FromWorker, type Layout, type Seen, type ToWorker } from "./shared";
 
 interface Kernels {
   memory: WebAssembly.Memory;
@@ -12,7 +12,14 @@ interface Kernels {
 let kernels: Kernels;
 let layout: Layout;
 let [intsAt, floatsAt, whole, others] = [0, 0, 0, 0];
-let start: { ints: Uint8Array; floats: Uint8Array };
+
+interface Kept {
+  ints: Uint8Array;
+  floats: Uint8Array;
+}
+let start: Kept;
+const marks: Kept[] = [];
+let back = false;
 
 const answer = (message: FromWorker, moved: Transferable[] = []) => postMessage(message, { transfer: moved });
 
@@ -38,12 +45,29 @@ function load(message: Extract<ToWorker, { kind: "load" }>) {
   intsAt = kernels.reserve(BigInt(start.ints.length));
   floatsAt = kernels.reserve(BigInt(start.floats.length));
   [whole, others] = [start.ints.length / 8, start.floats.length / 8];
-  toStart();
+  put(start);
 }
 
-function toStart() {
-  new Uint8Array(kernels.memory.buffer, intsAt, start.ints.length).set(start.ints);
-  new Uint8Array(kernels.memory.buffer, floatsAt, start.floats.length).set(start.floats);
+const bytes = (at: number) => new Uint8Array(kernels.memory.buffer, at, 8 * (at === intsAt ? whole : others));
+
+function put(kept: Kept) {
+  bytes(intsAt).set(kept.ints);
+  bytes(floatsAt).set(kept.floats);
+}
+
+function obey(command: Command) {
+  const [name] = command;
+  if (name === "keep") {
+    marks.push({ ints: bytes(intsAt).slice(), floats: bytes(floatsAt).slice() });
+    if (marks.length > MARKS) marks.shift();
+  } else if (name === "undo") {
+    put(marks.pop()!);
+  } else if (name === "reset") {
+    put(start);
+  } else {
+    call(command);
+  }
+  if (name === "undo" || name === "reset") back = name === "undo";
 }
 
 function seen(): Seen {
@@ -57,6 +81,7 @@ function seen(): Seen {
   const [pairs, shown] = [counts[layout.counts.pairs], counts[layout.counts.shown]];
   const state = (row: number) => some("state", n, row * n);
   return {
+    back,
     grains: {
       ...{ x: state(0), y: state(1), p: state(2), q1: state(3), q2: state(4) },
       ...{ rest: some("rest_radius", n), nu: some("poisson_ratio", n), spin: some("spin", n) },
@@ -67,6 +92,9 @@ function seen(): Seen {
     force: some("force", shown),
     endX: some("ends", shown - pairs, pairs),
     endY: some("ends", shown - pairs, size("contacts") + pairs),
+    ...{ pressure: some("pressure", n), stress: some("difference", n), motion: some("motion", n) },
+    ...{ squeezed: few("squeezed", n), pointed: few("pointed", n) },
+    said: some("said", layout.sentence * counts[layout.counts.said]),
     places: some("places", layout.columns * size("bodies")),
     reactions: some("reactions", 3 * size("bodies")),
     row: some("row", Object.keys(layout.row).length),
@@ -76,8 +104,9 @@ function seen(): Seen {
 
 function turn(commands: Command[]) {
   const begun = performance.now();
-  for (const command of commands) call(command);
-  const made = call(["advance"]) === 1n;
+  back = false;
+  for (const command of commands) obey(command);
+  const made = back || call(["advance"]) === 1n;
   answer({ kind: "seen", made, time: performance.now() - begun, seen: made ? seen() : null });
 }
 
@@ -87,9 +116,6 @@ onmessage = ({ data }: MessageEvent<ToWorker>) => {
       load(data);
       answer({ kind: "ready" });
     } else if (data.kind === "turn") {
-      turn(data.commands);
-    } else if (data.kind === "reset") {
-      toStart();
       turn(data.commands);
     } else {
       const copies = [ints().slice().buffer, floats().slice().buffer];

@@ -1,0 +1,12 @@
+// What the parts of the page share.
+
+import type { Conductor } from "./conductor";
+import type { Pane } from "./panes";
+
+export const state = { theme: "dark", view: 0, chains: true, seed: 0, share: LIVE.share?.at ?? 0, script: false, held: false };
+export const values = new Map(LIVE.sliders.map((slider) => [slider.name, slider.value]));
+export const panes: Pane[] = [];
+export const the = { dirty: true } as { plot: Plot; conductor: Conductor; dirty: boolean };
+
+export const view = () => LIVE.views[state.view];
+export const look = (): PlayerLook => ({ theme: state.theme, view: view(), chains: state.chains, scale: devicePixelRatio || 1 });
