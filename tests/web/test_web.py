@@ -21,15 +21,17 @@ import pytest
 
 from core.errors import InputError
 from sandbox.lessons import tours
+from sandbox.session.course import BLEW_UP, PRESSED_IN, SQUEEZED_FLAT
 from sandbox.web import building
 from sandbox.web.host import Host
-from sandbox.web.increment import course, remarks
+from sandbox.web.increment import course, relaxation, remarks
 from sandbox.web.increment.memory import COUNTS, ROW, Kept
+from sandbox.web.increment.observe import observe
 from sandbox.web.increment.systems import PLACES
 from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
 from sandbox.web.menu import menu
 from sandbox.web.pages import SLIDES, STEPS, sliders
-from sandbox.web.sentences import ALL, said_in
+from sandbox.web.sentences import ALL, said_in, told
 from sandbox.words import language
 from scenes import registry
 from tests.web.exact import BEGUN, CHANGED, commands, entries
@@ -150,6 +152,23 @@ def test_every_sentence_has_its_words_and_its_scene() -> None:
                 assert "{" not in language.Word(text).format(**values), (code, text)
     everything = frozenset().union(*(said_in(name) for name in building.SCENES))
     assert everything == frozenset(range(len(ALL)))
+
+
+def test_what_is_taken_back_is_said_as_on_the_desk() -> None:
+    scene = registry.get("single_grain")
+    settings = scene.settings({})
+    setup = scene.build(settings, "regular", 1)
+    blocks = laid_out(scene, setup, settings)
+    kept = Kept(*blocks)
+    course.advance(kept)
+    for reason, text in (
+        (relaxation.COLLAPSED, SQUEEZED_FLAT),
+        (relaxation.NOT_FINITE, BLEW_UP),
+        (relaxation.SUNK, PRESSED_IN),
+    ):
+        part(blocks, "counts", len(COUNTS))[COUNTS.reason] = reason
+        observe(kept)
+        assert told(blocks, "plate") == ([text], [])
 
 
 def test_every_slider_that_acts_where_grains_stand_is_tried() -> None:
@@ -296,7 +315,7 @@ def test_a_tour_on_a_page_asks_for_nothing_that_cannot_be_done_there() -> None:
 
 
 def test_the_page_computes_no_forces() -> None:
-    force = r"(?:force|bearing|resisting|reactions?|hand_[xy]|push|residual)"
+    force = r"(?:force|bearing|resisting|reactions?|hand_[xy]|push|residual|pressure|stress)"
     arithmetic = re.compile(
         rf'\b{force}\b["\])]*\s*(?:[-+*/]|\*\*)\s*\w|\w\s*[-+*/]\s*(?:\w+\.)*{force}\b',
         re.IGNORECASE,
@@ -367,6 +386,7 @@ def test_the_page_says_what_happens(tried: dict[str, Any]) -> None:
     assert re.fullmatch(r"locked at 8 k R: an arch of \d grains holds", regular["locked"])
     assert tried["told"][0].startswith(f"regular {regular['locked']}")
     assert any(line.startswith("regular · increment ") for line in tried["events"])
+    assert tried["slow"] == [["settling", "lamp working"]] * 3
     for line in tried["events"]:
         assert "{" not in line
         assert "NaN" not in line

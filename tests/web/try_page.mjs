@@ -124,6 +124,16 @@ const dragged = await stand();
 const told = await page.$$eval("#told p", (lines) => lines.map((line) => line.textContent));
 const events = await page.$$eval("#events li", (lines) => lines.map((line) => line.textContent));
 await check();
+// As if an increment took long.
+const slow = await page.evaluate(async () => {
+  const { conductor } = window.sandboxLive;
+  Object.assign(conductor, { busy: true, since: performance.now() - 1000 });
+  await new Promise(requestAnimationFrame);
+  await new Promise(requestAnimationFrame);
+  const said = Array.from(document.querySelectorAll("figcaption"), (strip) => [strip.querySelector(".said").textContent, strip.querySelector(".lamp").className]);
+  conductor.busy = false;
+  return said;
+});
 await set("regular_poisson_ratio", -4);
 await settled();
 const softer = await stand();
@@ -191,7 +201,7 @@ for (const name of readdirSync(pages).filter((name) => name.endsWith(".html")).m
 }
 await browser.close();
 console.log(JSON.stringify({
-  ...{ ready, faults, rate, dragged, told, events, softer, memory: again.map(({ memory }) => memory), others },
+  ...{ ready, faults, rate, dragged, told, events, slow, softer, memory: again.map(({ memory }) => memory), others },
   ...{ first, again: again.map(hash), laid },
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));
