@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from dataclasses import astuple
 from typing import Any
 
 import numpy as np
@@ -49,8 +50,8 @@ def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
     return block[at : at + length]
 
 
-def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
-    """A run of what was built, before its first increment.
+def laid_out(scene: Scene, setup: Setup, settings: Values, kind: str) -> Blocks:
+    """A run of what was built from grains of that kind, before its first increment.
 
     Raises InputError for what a page cannot run: a periodic box, bodies that turn, and any but discs that are dragged anywhere.
     """
@@ -109,6 +110,8 @@ def laid_out(scene: Scene, setup: Setup, settings: Values) -> Blocks:
     counts[COUNTS.scene] = REMARKS.get(scene.name, remarks.NOBODY)
     put("side", [SIDES.get(body.name, 0) for body in world.bodies])
     put("announced", [-1] * KINDS)
+    known = scene.accuracy.estimate(kind)
+    put("accuracy", [astuple(known.usual), astuple(known.nine_of_ten)])
     row[ROW.base] = min(y for _, y in setup.outline)
     row[ROW.rest] = setup.rest
     row[ROW.side] = math.hypot(*np.subtract(setup.outline[1], setup.outline[0]))

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from sandbox.draw.lamp import ROUGH
 from sandbox.draw.theme import packing_dash
 from sandbox.draw.views import VIEWS
 from sandbox.lessons import tours
@@ -32,7 +33,10 @@ DRAWING = (
     "legend.js",
 )
 # The window's words that the page says too.
-SPOKEN = ("force_error", "settling", "grains_out", "hand_limit", "seed", "squeezed")
+SPOKEN = (
+    *("settled", "force_error", "handle_force_error", "handle_force_within", "within", "no_forces"),
+    *("unknown_forces", "settling", "grains_out", "hand_limit", "seed", "squeezed"),
+)
 # And of the page that plays a run.
 SHARED = (
     *("view", "choices", "stage", "chains", "to_light", "to_dark", "increment", "events", "keys"),
@@ -93,6 +97,11 @@ class Built:
     setups: tuple[tuple[Setup, ...], ...]
 
     @property
+    def kinds(self) -> tuple[str, ...]:
+        """The kind of each of the packings of a seed."""
+        return (*self.packings, *[SHARED_PACKING] * len(self.shares))
+
+    @property
     def first(self) -> Setup:
         """One of them: handles and labels are the same in all, bodies in all of a packing."""
         return self.setups[0][0]
@@ -101,7 +110,11 @@ class Built:
 def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") -> str:
     """The HTML text. ``menu`` is markup before the choices. Raises InputError for a scene that a page cannot run."""
     blocks = [
-        [laid_out(built.scene, setup, built.settings) for setup in some] for some in built.setups
+        [
+            laid_out(built.scene, setup, built.settings, kind)
+            for setup, kind in zip(some, built.kinds, strict=True)
+        ]
+        for some in built.setups
     ]
     script = (
         f'"use strict";\nconst PAGE = {as_json(about(_words, "page_keys"))};\n'
@@ -238,6 +251,8 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
             "scriptOn": course.SCRIPT_ON,
             "scriptOff": course.SCRIPT_OFF,
         },
+        "tolerance": setup.solver.tolerance,
+        "rough": ROUGH,
         "reasons": [_reason(reason) for reason in REASONS],
         "sentences": [
             _sentence(sentence, handle.label) if number in said else None

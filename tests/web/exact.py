@@ -102,6 +102,7 @@ def seen(run: Any) -> dict[str, Any]:
         else np.zeros(0),
         "squeezed": frame.squeezed,
         "pointed": np.zeros(frame.grains) if frame.highlight is None else frame.highlight,
+        "errors": np.array([frame.usual_error, frame.force_error]),
     }
 
 
@@ -137,7 +138,7 @@ def main() -> None:
     if begun is not None:
         with np.load(begun) as numbers:
             setup.packing = packing_in((numbers["ints"], numbers["floats"]))
-    blocks = laid_out(scene, setup, settings)
+    blocks = laid_out(scene, setup, settings, kind)
     first = tuple(block.copy() for block in blocks)
     kept = Kept(*blocks)
     run = Run(scene, settings, kind, int(seed), setup)
@@ -145,17 +146,19 @@ def main() -> None:
     session_said, kernels_said = [run.state_hash()], [state_hash(blocks)]
     left, shares, curve = [0], [1.0], []
     said: list[tuple[str, str]] = []
-    apart = dict.fromkeys(("pressure", "difference", "motion", "squeezed", "pointed"), 0.0)
+    shown = ("pressure", "difference", "motion", "squeezed", "pointed", "errors")
+    apart = dict.fromkeys(shown, 0.0)
 
     def look() -> None:
         observe(kept)
         said.append((said_by(run), repr(told(blocks, setup.handles[0].label))))
+        errors = part(blocks, "row", len(ROW))[ROW.usual_error : ROW.force_error + 1]
         for what, there in seen(run).items():
-            here = part(blocks, what, len(there))
-            off = float(np.max(np.abs(here - np.asarray(there, dtype=np.float64)), initial=0.0))
-            apart[what] = max(
-                apart[what], off / max(float(np.max(np.abs(there), initial=0.0)), 1.0)
-            )
+            here = errors if what == "errors" else part(blocks, what, len(there))
+            size = max(float(np.nanmax(np.abs(there), initial=0.0)), 1.0)
+            off = np.nan_to_num(np.abs(here - np.asarray(there, dtype=np.float64)))
+            off[np.isnan(here) != np.isnan(there)] = np.inf
+            apart[what] = max(apart[what], float(np.max(off, initial=0.0)) / size)
 
     look()
     body = setup.handles[0].body

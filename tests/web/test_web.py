@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from sandbox.draw.numbers import ONE_DIGIT, percent
 from sandbox.lessons import tours
 from sandbox.session.course import BLEW_UP, PRESSED_IN, SQUEEZED_FLAT
 from sandbox.web import building
@@ -32,7 +33,7 @@ from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
 from sandbox.web.menu import menu
 from sandbox.web.pages import SLIDES, STEPS, sliders
 from sandbox.web.sentences import ALL, said_in, told
-from sandbox.words import language
+from sandbox.words import language, words
 from scenes import registry
 from tests.web.exact import BEGUN, CHANGED, commands, entries
 
@@ -158,7 +159,7 @@ def test_what_is_taken_back_is_said_as_on_the_desk() -> None:
     scene = registry.get("single_grain")
     settings = scene.settings({})
     setup = scene.build(settings, "regular", 1)
-    blocks = laid_out(scene, setup, settings)
+    blocks = laid_out(scene, setup, settings, "regular")
     kept = Kept(*blocks)
     course.advance(kept)
     for reason, text in (
@@ -252,7 +253,7 @@ def test_what_a_page_cannot_run_is_refused() -> None:
     settings = scene.settings({"grains": 100})
     setup = scene.build(settings, "mixed", 1)
     with pytest.raises(InputError, match="a page runs scenes in an open box"):
-        laid_out(scene, replace(setup, curve=None), settings)
+        laid_out(scene, replace(setup, curve=None), settings, "mixed")
     with pytest.raises(InputError, match="there is no page of couette: choose hopper, "):
         building.scene_named("couette")
 
@@ -262,7 +263,7 @@ def test_a_disc_that_is_dragged_stays_out_of_walls_and_slides_along_them() -> No
     settings = scene.settings({"grains": 60, "intruder_radius": 2.0})
     setup = scene.build(settings, "mixed", 1)
     setup.packing = setup.packing.select(np.zeros(len(setup.packing), dtype=np.bool_))
-    blocks = laid_out(scene, setup, settings)
+    blocks = laid_out(scene, setup, settings, "mixed")
     kept, driven = Kept(*blocks), setup.world.index("intruder")
     course.advance(kept)
     right, top = setup.outline[2]
@@ -386,6 +387,11 @@ def test_the_page_says_what_happens(tried: dict[str, Any]) -> None:
     assert re.fullmatch(r"locked at 8 k R: an arch of \d grains holds", regular["locked"])
     assert tried["told"][0].startswith(f"regular {regular['locked']}")
     assert any(line.startswith("regular · increment ") for line in tried["events"])
+    for said, (usual, most) in zip(tried["trust"], tried["errors"], strict=True):
+        often, bound = (percent(max(error, 1e-6), ONE_DIGIT) for error in (usual, most))
+        text = words.HANDLE_FORCE_ERROR.format(usual=often, error=bound)
+        within = words.HANDLE_FORCE_WITHIN.format(error=bound)
+        assert said in (f"settled · {text}", f"settled · {within}")
     assert tried["slow"] == [["settling", "lamp working"]] * 3
     for line in tried["events"]:
         assert "{" not in line

@@ -25,7 +25,7 @@ page.on("pageerror", (error) => fault(String(error)));
 page.on("request", (request) => {
   if (!/^(file|data|blob):/.test(request.url())) fault(`asks for ${request.url()}`);
 });
-page.setDefaultTimeout(180000);
+page.setDefaultTimeout(600000);
 
 const address = (name) => pathToFileURL(join(resolve(pages), name)).href;
 const hash = ({ ints, floats }) => createHash("sha256").update(ints.join() + floats.join()).digest("hex");
@@ -122,6 +122,8 @@ await page.mouse.up();
 await settled();
 const dragged = await stand();
 const told = await page.$$eval("#told p", (lines) => lines.map((line) => line.textContent));
+const trust = await page.$$eval("figcaption .said", (lines) => lines.map((line) => line.title));
+const errors = await look('(pane) => [pane.row("usual_error"), pane.row("force_error")]');
 const events = await page.$$eval("#events li", (lines) => lines.map((line) => line.textContent));
 await check();
 // As if an increment took long.
@@ -159,6 +161,7 @@ async function tried(name) {
   where = name;
   await page.goto(address(`${name}.html`));
   await page.waitForSelector("html[data-ready]");
+  await page.waitForFunction(() => window.sandboxLive.panes.every((pane) => pane.seen));
   await turns(0);
   await page.keyboard.press("r");
   await turns(1);
@@ -201,7 +204,7 @@ for (const name of readdirSync(pages).filter((name) => name.endsWith(".html")).m
 }
 await browser.close();
 console.log(JSON.stringify({
-  ...{ ready, faults, rate, dragged, told, events, slow, softer, memory: again.map(({ memory }) => memory), others },
+  ...{ ready, faults, rate, dragged, told, trust, errors, events, slow, softer, memory: again.map(({ memory }) => memory), others },
   ...{ first, again: again.map(hash), laid },
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));

@@ -256,6 +256,11 @@ def advance(kept):
     row[ROW.scale] = made.scale
     row[ROW.energy] = made.energy
     row[ROW.share] = made.share
+    squares = 0.0
+    for i in range(made.unbalanced.shape[1]):
+        x, y = made.unbalanced[0, i], made.unbalanced[1, i]
+        squares += x * x + y * y
+    row[ROW.unbalanced] = np.sqrt(squares)
     if left:
         row[ROW.waited] = row[ROW.stroke] - row[ROW.exit_stroke]
         row[ROW.exit_stroke] = row[ROW.stroke]

@@ -105,6 +105,8 @@ def remember(kept, system, contacts):
     drive[DRIVE.older_stroke], drive[DRIVE.older_force] = drive[DRIVE.stroke], drive[DRIVE.force]
     drive[DRIVE.stroke], drive[DRIVE.force] = row[ROW.stroke], row[ROW.resisting]
     drive[DRIVE.sum] += abs(row[ROW.resisting])
+    fx, fy = system.past.reactions[body, 0], system.past.reactions[body, 1]
+    drive[DRIVE.felt] += math.sqrt(fx * fx + fy * fy)
     drive[DRIVE.asked] = system.wanted[body, ASKED]
     drive[DRIVE.moved_x], drive[DRIVE.moved_y] = system.past.moved[body]
     pairs = min(contacts.pairs, kept.ints[SIZES.contacts])

@@ -87,6 +87,11 @@ class Row(NamedTuple):
     )
     waited: int = 16  # stroke between the exits of the latest grain and of the one before it
     base: int = 17  # height of the lips of an orifice [R]
+    unbalanced: int = (
+        18  # root of the sum of squares of the forces that are left on the grains [k R]
+    )
+    usual_error: int = 19  # of the force on the handle, over its mean so far; nan: nobody knows
+    force_error: int = 20  # and that nine of ten stay within
 
 
 class Said(NamedTuple):
@@ -105,10 +110,11 @@ class Drive(NamedTuple):
     force: int = 1
     older_stroke: int = 2  # and before that
     older_force: int = 3
-    sum: int = 4  # of the magnitudes of all forces so far
+    sum: int = 4  # of the magnitudes of all that is plotted so far
     asked: int = 5  # was the driven body asked for?
     moved_x: int = 6  # [R]
     moved_y: int = 7
+    felt: int = 8  # sum of the magnitudes of the force on the driven body so far [k R]
 
 
 COUNTS, ROW, SIZES, SAID, DRIVE = Course(), Row(), Sizes(*range(8)), Said(), Drive()
@@ -148,6 +154,7 @@ class Parts(NamedTuple):
     motion: int  # (N,) in the latest increment, against the mean of all [R]
     said: int  # (SENTENCES, COLUMNS)
     drive: int
+    accuracy: int  # (2, 3) bounds of ``scenes.accuracy``: one time in two, and nine of ten
     force_before: int  # (contacts,) between grains, in the increment before [k R]
     label: int  # of ints, from here
     keys: int
@@ -200,6 +207,7 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "motion": n,
         "said": SENTENCES * COLUMNS,
         "drive": len(DRIVE),
+        "accuracy": 6,
         "force_before": sizes.contacts,
         "label": n,
         "keys": sizes.room,

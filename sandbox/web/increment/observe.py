@@ -24,17 +24,22 @@ from sandbox.web.increment.contacts import (
     support_coefficients,
     touching,
 )
-from sandbox.web.increment.falls import remember
+from sandbox.web.increment.falls import drive_of, remember
+from sandbox.web.increment.increment import failed
 from sandbox.web.increment.memory import (
     COUNTS,
+    DRIVE,
     PART,
+    ROW,
     SIZES,
     clear,
     counts_of,
     floats_at,
     ints_at,
+    row_of,
     system_in,
 )
+from sandbox.web.increment.powers import power
 from sandbox.web.increment.remarks import remark
 
 
@@ -49,6 +54,7 @@ def observe(kept):
     measure_grains(kept, system)
     remark(kept, system, contacts)
     remember(kept, system, contacts)
+    trust(kept, system)
 
 
 @kernel(allocates=True)
@@ -114,6 +120,32 @@ def measure_stress(kept, state, contacts, rows):
         pressure[i] = stress[0, i] / twice
         deviator = math.sqrt(stress[1, i] * stress[1, i] + stress[2, i] * stress[2, i])
         difference[i] = 2.0 * deviator / twice
+
+
+@kernel
+def error(bound, contact_force, left, moved):
+    """``scenes.accuracy.Bound.error`` [k R]."""
+    if contact_force <= 0.0:
+        return 0.0
+    return bound[0] * contact_force * power(left / contact_force, bound[1]) * power(moved, bound[2])
+
+
+@kernel(allocates=True)
+def trust(kept, system):
+    """How far off the force on the handle may be, over its mean magnitude so far (``scenes.accuracy.Estimate.errors``)."""
+    counts, row, last = counts_of(kept), row_of(kept), system.past.last
+    bounds = floats_at(kept, PART.accuracy, 6).reshape(2, 3)
+    farthest = 0.0
+    for i in range(last.shape[1]):
+        farthest = max(farthest, last[0, i] * last[0, i] + last[1, i] * last[1, i])
+    moved = max(math.sqrt(farthest) / system.settings.step, 1.0)
+    left = max(row[ROW.unbalanced], row[ROW.residual] * row[ROW.scale])
+    mean = drive_of(kept)[DRIVE.felt] / counts[COUNTS.rows]
+    usual = error(bounds[0], row[ROW.scale], left, moved)
+    most = max(usual, error(bounds[1], row[ROW.scale], left, moved))
+    known = mean > 0.0 and not failed(counts[COUNTS.reason])
+    row[ROW.usual_error] = usual / mean if known else np.nan
+    row[ROW.force_error] = most / mean if known else np.nan
 
 
 @kernel(allocates=True)

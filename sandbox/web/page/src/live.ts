@@ -51,6 +51,8 @@ export interface Live {
   sliders: Slider[];
   share: Share | null;
   commands: Record<string, number>; // kinds of the entry `command`
+  tolerance: number; // of the residual
+  rough: number; // an error of the force that is much
   reasons: { text: string[]; level: number }[]; // why a relaxation ended
   sentences: ({ text: string[]; values: string[] } | null)[]; // what is said, and what its numbers are called
   events: string[]; // kinds

@@ -2,6 +2,7 @@
 
 import type { Live, Packing } from "./live";
 import { told, type Told } from "./sentences";
+import { lamp } from "./trust";
 import type { Seen } from "./shared";
 
 export const $ = <Kind extends HTMLElement>(id: string) => document.getElementById(id) as Kind;
@@ -17,6 +18,7 @@ export function setText(node: HTMLElement, text: string) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+const LETTER = 8; // [px] of one, about
 const FRESH = 40; // increments for which an event is spoken of
 
 export class Pane {
@@ -37,6 +39,7 @@ export class Pane {
   private lags = false;
   back: PlayerTrack | null = null; // what the curve was at a state that is asked for
   went = true; // has it gone back?
+  private room = 0; // for what is said of the lamp [px]
 
   constructor(private readonly live: Live, readonly index: number) {
     const { name, title, dash, bounds } = live.packings[index];
@@ -133,6 +136,10 @@ export class Pane {
     return said;
   }
 
+  measure() {
+    this.room = this.said.clientWidth;
+  }
+
   // Does an increment keep a person waiting?
   lag(lags: boolean) {
     if (lags === this.lags) return;
@@ -164,15 +171,13 @@ export class Pane {
   }
 
   tell() {
-    const reason = this.live.reasons[this.count("reason")];
     setText(this.name, this.title);
     setText(this.value, this.valuesSaid().join(" · "));
-    const within = 100 * Math.max(this.row("residual"), 1e-6);
-    const balance = word("force_error", { error: `${short(Number(within.toPrecision(2)))} %` });
-    // That it has settled is said by how well; there is no room for both beside other packings.
-    const waits = !this.seen || this.lags;
-    setText(this.said, waits ? word("settling") : reason.level ? say(reason.text) : balance);
-    this.lamp.className = `lamp ${["good", "working", "bad"][waits ? 1 : reason.level]}`;
+    const settling = word("settling");
+    const { level, words, short } = this.seen && !this.lags ? lamp(this) : { level: 1, words: settling, short: settling };
+    setText(this.said, words.length * LETTER < this.room ? words : short);
+    this.said.title = words;
+    this.lamp.className = `lamp ${["good", "working", "bad"][level]}`;
     const notices = this.notices();
     if (this.told.dataset.notices !== notices + this.title) {
       this.told.dataset.notices = notices + this.title;
@@ -213,8 +218,8 @@ export class Pane {
 
   // For who does not see the picture.
   standing(): string {
-    const parts = [...this.valuesSaid(), this.notices()].filter(Boolean);
-    return `${this.title}: ${parts.join(", ") || word("settling")}`;
+    const parts = [...this.valuesSaid(), this.said.title, this.notices()].filter(Boolean);
+    return `${this.title}: ${parts.join(", ")}`;
   }
 }
 

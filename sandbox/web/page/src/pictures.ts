@@ -4,6 +4,7 @@ import { $ } from "./panes";
 import { look, panes, state, the, view } from "./stage";
 
 export const pictures = { count: 0, since: performance.now() };
+const SHRINKS = 0.2; // of a scale that is much too large
 const LAG = 500; // [ms] after which an increment keeps a person waiting
 
 export function arrange() {
@@ -27,6 +28,7 @@ export function arrange() {
     canvas.width = Math.max(Math.round(clientWidth * ratio), 1);
     canvas.height = Math.max(Math.round(clientHeight * ratio), 1);
   }
+  for (const pane of panes) pane.measure();
   const fitted = panes.map(({ canvas, shown }) => cameraFor(shown.bounds, canvas.width, canvas.height, 10 * ratio));
   const scale = Math.min(...fitted.map((camera) => camera.k)); // one scale for all
   for (const { canvas, shown, camera } of panes) Object.assign(camera, cameraFor(shown.bounds, canvas.width, canvas.height, 0, scale));
@@ -57,9 +59,10 @@ export function scales() {
 function scaleView() {
   const shown = view();
   if (!shown.valued) return;
-  const top = Math.max(shown.top ?? 0, topOf(shown, panes.map((pane) => pane.shown)));
-  if (top !== shown.top) the.dirty = true;
-  shown.top = top;
+  const wanted = topOf(shown, panes.map((pane) => pane.shown));
+  if (shown.top && wanted <= shown.top && wanted >= SHRINKS * shown.top) return;
+  shown.top = wanted;
+  the.dirty = true;
 }
 
 let legend = "";
