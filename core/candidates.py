@@ -47,9 +47,10 @@ def count_listed(width):
 
 
 @kernel
-def recall(keys, known_keys, known_slips, slip, known):
-    """What the pairs with ``keys`` (K,) remember into ``slip`` (K,) [R], 0 for new ones; ``known`` (K,) says which do.
+def begin_marks(place, keys, known_keys, known_slips, marks, known):
+    """Where slips are counted from: remembered slip, gap and branch vector [R] into ``marks`` (4, K) of the pairs with ``keys``.
 
+    ``place`` (7, K) is their geometry there. A pair that remembers nothing has slip 0; ``known`` (K,) says which do.
     ``known_keys`` ascend.
     """
     for k in range(keys.shape[0]):
@@ -61,7 +62,10 @@ def recall(keys, known_keys, known_slips, slip, known):
             else:
                 high = middle
         known[k] = low < known_keys.shape[0] and known_keys[low] == keys[k]
-        slip[k] = known_slips[low] if known[k] else 0.0
+        marks[0, k] = known_slips[low] if known[k] else 0.0
+        marks[1, k] = max(place[0, k], 0.0)
+        marks[2, k] = place[1, k]
+        marks[3, k] = place[2, k]
 
 
 @kernel

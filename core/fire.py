@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from core import sweeps, threads
 from core.contacts import prepare, slot_force_sum
 from core.jit import kernel
-from core.neighbors import FIT, RIGID_FULL, Lists, rebuild
-from core.rigid_contacts import RigidTerms, add_rigid_forces, find_rigid_pairs, image, touch
+from core.neighbors import Lists
+from core.rigid_contacts import add_rigid_forces, image, touch
 from core.slip import prepare_friction
-from core.steering import ALPHA_START, DT_START, steer
+from core.steering import steer
 from core.sweeps import CHUNK, add, collapsed, drift, farthest, permute
 
 CONVERGED, BUDGET, NOT_FINITE, COLLAPSED, LISTS_STALE = 0, 1, 2, 3, 4
@@ -109,16 +109,6 @@ class Limits(NamedTuple):
     skin: float  # [R]
 
 
-def fresh_control(dt_max: float) -> NDArray[np.void]:
-    """``Minimizer.control`` before the first evaluation; ``dt_max`` as in ``Limits``."""
-    control = np.zeros(1, dtype=CONTROL)
-    control["dt"] = DT_START * dt_max
-    control["alpha"] = ALPHA_START
-    control["pending"] = True
-    control["start_energy"] = np.nan
-    return control
-
-
 @kernel
 def reorder(state, velocity, inverse_mass, grains, identity, order, scratch, scratch_identity):
     """Put every per-grain array into the order of new lists."""
@@ -131,35 +121,6 @@ def reorder(state, velocity, inverse_mass, grains, identity, order, scratch, scr
     permute(grains.area_stiffness, order, scratch)
     permute(grains.shape_stiffness, order, scratch)
     permute(identity, order, scratch_identity)
-
-
-def relist(
-    m: Minimizer, box: tuple[float, ...] | None, rigid: RigidTerms | None, skin: float
-) -> int:
-    """Rebuild all lists and put every per-grain array in their order. Returns FIT, or which arrays are too short.
-
-    Called between slices of ``run``: lists are rebuilt hundreds of times less often than forces. In pieces, each of which is
-    compiled once for scenes with these terms and without.
-    """
-    trouble = rebuild(m.state, m.grains.contact_stiffness, skin, m.lists, box)
-    if trouble != FIT:
-        return trouble
-    reorder(
-        m.state,
-        m.velocity,
-        m.inverse_mass,
-        m.grains,
-        m.identity,
-        m.lists.order,
-        m.scratch,
-        m.scratch_identity,
-    )
-    if rigid is not None and not find_rigid_pairs(m.state, rigid, 0.5 * skin, box):
-        return RIGID_FULL
-    m.reference[:] = m.state
-    m.control["moved"] = 0.0
-    m.control["listed"] = True
-    return FIT
 
 
 @kernel
@@ -287,7 +248,7 @@ def mean_contact_force(m, box, rigid):
 
 @kernel
 def run(m, box, rigid, friction, gravity, limits, max_iterations, shared):
-    """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE call ``relist``.
+    """Relax for at most ``max_iterations`` force evaluations. Returns (reason, evaluations); after LISTS_STALE make new lists.
 
     ``box``, ``rigid``, ``friction`` and ``gravity`` are None where the scene has no such term, ``shared`` where one thread does
     it all; then no code for it exists.

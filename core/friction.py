@@ -114,7 +114,7 @@ class Friction:
         return Origin(
             coefficient=self.coefficient,
             state=packing.state.copy(),
-            box=packing.box,
+            box=None if packing.box is None else packing.box.kernel_form(),
             primitives=np.ascontiguousarray(primitives),
             turn=np.ascontiguousarray((after - before)[owner, 2]),
             label=packing.label,
@@ -123,6 +123,6 @@ class Friction:
         )
 
     def end(self, keys: Indices, slips: Floats, turned: Floats) -> None:
-        """Remember what contacts hold, as ``FrictionalContacts.end`` says, and that grains turned by ``turned`` (N,) [rad]."""
+        """Remember what contacts hold, as ``frictional_contacts.ended`` says, and that grains turned by ``turned`` (N,) [rad]."""
         self._keys, self._slips = keys, slips
         self.spin += turned

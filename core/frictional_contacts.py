@@ -12,23 +12,23 @@ A contact that goes over from an edge to the vertex at its end, or back, is the 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.arrays import Floats, aligned_zeros
 from core.candidates import (
+    begin_marks,
     count_listed,
     find_corners,
     list_candidates,
-    recall,
     round_corners,
 )
 from core.fire import Minimizer
+from core.jit import shared
 from core.marks import count_beyond, lay_out, measure, slips, tangential_forces
-from core.observables import GrainContacts, RigidContacts
-from core.packing import PeriodicBox
+from core.observables import GrainContacts, RigidContacts, push_bodies
 from core.rigid_contacts import RigidTerms
 from core.slip import FrictionTerms, prepare_friction
 
@@ -38,13 +38,12 @@ Box = tuple[float, ...]
 BEYOND = 1.05  # times the Coulomb cap: a contact that pulls harder counts as beyond the cone
 
 
-@dataclass(frozen=True)
-class Origin:
+class Origin(NamedTuple):
     """Where an increment begins, from which slips are counted."""
 
     coefficient: float
     state: Floats  # (5, N) in the packing's order
-    box: PeriodicBox | None
+    box: Box | None  # as kernels have it
     primitives: Floats  # (M, 8) before the bodies moved
     turn: Floats  # (M,) how far the body of each primitive turns in the increment [rad]
     label: Indices  # (N,)
@@ -66,6 +65,12 @@ class FrictionForces:
     dx: Floats  # branch vector from grain i to grain j, or to where it touches the body [R]
     dy: Floats
     sliding: NDArray[np.bool_]  # at the Coulomb cap
+
+    @classmethod
+    def of(cls, pulls: Pulls) -> FrictionForces:
+        """The same forces."""
+        parts: tuple[Any, ...] = (*pulls.who, *pulls.values, pulls.sliding)
+        return cls(*parts)
 
     def beyond_cone(self, coefficient: float, pairs: GrainContacts, bodies: RigidContacts) -> float:
         """Share of these contacts that pull harder than ``BEYOND`` times μ times the normal force they have by another measure.
@@ -95,15 +100,9 @@ class FrictionForces:
 
     def reactions(self, owner: Indices, placement: Floats) -> Floats:
         """Force and torque on each body (B, 3) [k R, k R²]; arguments as for ``observables.reactions``."""
-        on_body = self.j < 0
-        body = owner[self.primitive[on_body]]
-        fx, fy = -self.fx[on_body], -self.fy[on_body]
-        total = np.zeros((len(placement), 3))
-        np.add.at(total[:, 0], body, fx)
-        np.add.at(total[:, 1], body, fy)
-        lever_x = self.x[on_body] - placement[body, 0]
-        lever_y = self.y[on_body] - placement[body, 1]
-        np.add.at(total[:, 2], body, lever_x * fy - lever_y * fx)
+        at, total = np.flatnonzero(self.j < 0), np.zeros((len(placement), 3))
+        forces = self.fx[at], self.fy[at], self.x[at], self.y[at]
+        push_bodies(owner[self.primitive[at]], *forces, placement, total)
         return total
 
     def stress(self, area: float, *, bodies: bool = False) -> Floats:
@@ -114,125 +113,219 @@ class FrictionForces:
         return -np.array(tensor) / area
 
 
-class FrictionalContacts:
-    """Held by a relaxation with friction, which tells it of every new neighbour list."""
+class FrictionalContacts(NamedTuple):
+    """What a relaxation with friction knows of its contacts, from one list to the next; K pairs, first P of two grains."""
 
-    def __init__(self, origin: Origin, rigid: RigidTerms | None) -> None:
-        self._origin = origin
-        self._keys, self._slips = origin.keys, origin.slips
-        self._turn = origin.turn
-        self._primitives = np.zeros((0, 8)) if rigid is None else rigid.primitives
-        self._corners = np.empty((len(self._primitives), 2), dtype=np.int64)
-        find_corners(self._primitives, self._corners)
-        self._listed: Indices | None = None  # keys of the pairs, first those of two grains
-        count = len(origin.label)
-        self._at_i = self._at_j = np.zeros(0, dtype=np.uint32)
-        self._primitive = np.zeros(0, dtype=np.int64)
-        self._marks = np.zeros((4, 0))
-        self.terms = FrictionTerms(
-            coefficient=origin.coefficient,
-            origin=np.zeros((4, count)),
-            change=np.zeros((4, count)),
-            sums=np.zeros((2, count)),
-            marks=np.zeros((4, 0)),
-            reactions=aligned_zeros(8, 0),
-            received=aligned_zeros(count, 8),
-            body_marks=np.zeros((4, 0)),
-            turn=origin.turn,
-        )
+    listed: bool  # have there been lists yet?
+    keys: Indices  # (K,) of the listed pairs
+    known: Indices  # of the contacts that remember a slip, ascending
+    slips: Floats  # and those ξ [R]
+    primitives: Floats  # (M, 8) as they stand
+    corners: Indices  # (M, 2)
+    at_i: NDArray[np.uint32]  # (K,) places in the minimiser's order
+    at_j: NDArray[np.uint32]  # (P,)
+    primitive: Indices  # (K − P,)
+    marks: Floats  # (4, K)
+    terms: FrictionTerms
 
-    def commit(self, m: Minimizer, box: Box | None) -> None:
-        """Remember what every contact holds now. Before new lists, while ``m`` stands in the order of the old ones."""
-        if self._listed is None:
-            return
-        _, held = self._measure(m, box)
-        self._keys, self._slips = self._hold(held)
-        self._turn = np.zeros_like(self._turn)
 
-    def relist(self, m: Minimizer, rigid: RigidTerms | None, box: Box | None) -> None:
-        """Take every pair of new lists as a candidate, with its slip counted from the origin, or from here if that is past."""
-        pairs, entries = count_listed(m.lists.width)
-        grain = primitive = np.zeros(0, dtype=np.int64)
-        if rigid is not None:
-            used = int(rigid.used[0])
-            grain, primitive = rigid.grain[:used], rigid.primitive[:used].copy()
-        count, many = len(self._origin.label), pairs + len(grain)
-        keys = np.empty(many, dtype=np.int64)
-        self._at_i, self._at_j = np.empty(many, dtype=np.uint32), np.empty(pairs, dtype=np.uint32)
-        self._primitive = primitive
-        list_candidates(
-            pairs,
-            m.lists,
-            m.identity,
-            self._origin.label,
-            grain,
-            primitive,
-            self._at_i,
-            self._at_j,
-            keys,
-        )
-        start, primitives, cell = m.state, self._primitives, box
-        if self._listed is None:
-            start = np.zeros((6, count))
-            start[:5] = self._origin.state[:, m.identity]
-            primitives = self._origin.primitives
-            cell = None if self._origin.box is None else self._origin.box.kernel_form()
-        place = np.empty((7, many))
-        measure(self._at_i, self._at_j, primitive, start, primitives, cell, place)
-        marks, known = np.empty((4, many)), np.empty(many, dtype=np.bool_)
-        slip, gap = marks[0], marks[1]
-        recall(keys, self._keys, self._slips, slip, known)
-        np.maximum(place[0], 0.0, out=gap)
-        marks[2:] = place[1:3]
-        room = np.empty((count, len(primitives)), dtype=np.int64)
-        round_corners(pairs, self._at_i, primitive, self._corners, room, slip, gap, known)
-        slots = np.zeros((4, entries))
-        lay_out(m.lists, self._at_i, self._at_j, marks, m.lists.filled, slots)
-        self.terms = self.terms._replace(
-            origin=start[2:].copy(),
-            marks=slots,
-            reactions=aligned_zeros(8, entries),
-            body_marks=marks[:, pairs:].copy(),
-            turn=self._turn,
-        )
-        self._marks, self._listed = marks, keys
+class Pulls(NamedTuple):
+    """Tangential forces as ``marks.tangential_forces`` finds them, (L,) each."""
 
-    def end(self, m: Minimizer, box: Box | None) -> tuple[Indices, Floats, FrictionForces]:
-        """What the contacts remember, keys and slips [R], and the forces that they stand for, in the packing's order."""
-        place, held = self._measure(m, box)
-        many = len(self._at_i)
-        who, values = np.empty((3, many), dtype=np.int64), np.empty((6, many))
-        sliding = np.empty(many, dtype=np.bool_)
-        used = tangential_forces(
-            self._at_i,
-            self._at_j,
-            self._primitive,
-            m.state,
-            m.grains.contact_stiffness,
-            m.identity,
-            self._primitives,
-            place,
-            held,
-            who,
-            values,
-            sliding,
-        )
-        found: tuple[Any, ...] = (*who[:, :used], *values[:, :used], sliding[:used])
-        return *self._hold(held), FrictionForces(*found)
+    who: Indices  # (3, L) grain, other grain or -1, primitive or -1
+    values: Floats  # (6, L) force on the grain x, y [k R], where it acts x, y [R], and the branch vector x, y [R]
+    sliding: NDArray[np.bool_]
 
-    def _measure(self, m: Minimizer, box: Box | None) -> tuple[Floats, Floats]:
-        """Geometry (7, K) and slips with their limits (2, K) of all pairs as they stand now."""
-        place, held = np.empty((7, len(self._at_i))), np.empty((2, len(self._at_i)))
-        pairs = self._at_i, self._at_j, self._primitive
-        measure(*pairs, m.state, self._primitives, box, place)
-        prepare_friction(0, m.state.shape[1], m.state, self.terms)
-        slips(*pairs, self._marks, m.state, self.terms, self._primitives, box, place, held)
-        return place, held
 
-    def _hold(self, held: Floats) -> tuple[Indices, Floats]:
-        """Keys, ascending, and slips [R] of the contacts that touch."""
-        listed = np.zeros(0, dtype=np.int64) if self._listed is None else self._listed
-        touching = held[1] > 0.0
-        keys = listed[touching]
-        order = np.argsort(keys, kind="stable")
-        return keys[order], held[0, touching][order]
+@shared
+def before_lists(origin: Origin, primitives: Floats) -> FrictionalContacts:
+    """Contacts before the first lists, among ``primitives`` (M, 8) as they stand now."""
+    count = origin.label.shape[0]
+    corners = np.empty((primitives.shape[0], 2), np.int64)
+    find_corners(primitives, corners)
+    terms = FrictionTerms(
+        origin.coefficient,
+        np.zeros((4, count)),
+        np.zeros((4, count)),
+        np.zeros((2, count)),
+        np.zeros((4, 0)),
+        aligned_zeros(8, 0),
+        aligned_zeros(count, 8),
+        np.zeros((4, 0)),
+        origin.turn,
+    )
+    return FrictionalContacts(
+        False,
+        np.zeros(0, np.int64),
+        origin.keys,
+        origin.slips,
+        primitives,
+        corners,
+        np.zeros(0, np.uint32),
+        np.zeros(0, np.uint32),
+        np.zeros(0, np.int64),
+        np.zeros((4, 0)),
+        terms,
+    )
+
+
+@shared
+def committed(
+    m: Minimizer, contacts: FrictionalContacts | None, box: Box | None
+) -> FrictionalContacts | None:
+    """They remember what every one holds now. Before new lists, while ``m`` stands in the order of the old ones.
+
+    None, where there is no friction, stays None.
+    """
+    if contacts is None:
+        return contacts  # not None: in a kernel both ways must come to one type
+    if not contacts.listed:
+        return contacts
+    _, held = _measured(m, contacts, box)
+    known, slips_now = _held(contacts.keys, held)
+    old = contacts.terms
+    terms = FrictionTerms(
+        old.coefficient,
+        old.origin,
+        old.change,
+        old.sums,
+        old.marks,
+        old.reactions,
+        old.received,
+        old.body_marks,
+        np.zeros_like(old.turn),
+    )
+    return FrictionalContacts(
+        True,
+        contacts.keys,
+        known,
+        slips_now,
+        contacts.primitives,
+        contacts.corners,
+        contacts.at_i,
+        contacts.at_j,
+        contacts.primitive,
+        contacts.marks,
+        terms,
+    )
+
+
+@shared
+def relisted(
+    m: Minimizer,
+    origin: Origin | None,
+    contacts: FrictionalContacts | None,
+    rigid: RigidTerms | None,
+    box: Box | None,
+) -> FrictionalContacts | None:
+    """Every pair of new lists is a candidate, with its slip counted from the origin, or from here if that is past.
+
+    None, where there is no friction, stays None.
+    """
+    if contacts is None or origin is None:
+        return contacts
+    pairs, entries = count_listed(m.lists.width)
+    grain, primitive = _near_bodies(rigid)
+    count, many = origin.label.shape[0], pairs + grain.shape[0]
+    keys, at_i, at_j = (
+        np.empty(many, np.int64),
+        np.empty(many, np.uint32),
+        np.empty(pairs, np.uint32),
+    )
+    list_candidates(pairs, m.lists, m.identity, origin.label, grain, primitive, at_i, at_j, keys)
+    place = np.empty((7, many))
+    start, rows = m.state, contacts.primitives
+    if contacts.listed:
+        measure(at_i, at_j, primitive, start, rows, box, place)
+    else:
+        start, rows = np.zeros((6, count)), origin.primitives
+        start[:5] = origin.state[:, m.identity]
+        measure(at_i, at_j, primitive, start, rows, origin.box, place)
+    marks, known = np.empty((4, many)), np.empty(many, np.bool_)
+    begin_marks(place, keys, contacts.known, contacts.slips, marks, known)
+    room = np.empty((count, rows.shape[0]), np.int64)
+    round_corners(pairs, at_i, primitive, contacts.corners, room, marks[0], marks[1], known)
+    slots = np.zeros((4, entries))
+    lay_out(m.lists, at_i, at_j, marks, m.lists.filled, slots)
+    old = contacts.terms
+    terms = FrictionTerms(
+        old.coefficient,
+        start[2:].copy(),
+        old.change,
+        old.sums,
+        slots,
+        aligned_zeros(8, entries),
+        old.received,
+        marks[:, pairs:].copy(),
+        old.turn,
+    )
+    return FrictionalContacts(
+        True,
+        keys,
+        contacts.known,
+        contacts.slips,
+        contacts.primitives,
+        contacts.corners,
+        at_i,
+        at_j,
+        primitive,
+        marks,
+        terms,
+    )
+
+
+@shared
+def ended(
+    m: Minimizer, contacts: FrictionalContacts, box: Box | None
+) -> tuple[Indices, Floats, Pulls]:
+    """What the contacts remember, keys and slips [R], and the forces that they stand for, in the packing's order."""
+    place, held = _measured(m, contacts, box)
+    many = contacts.at_i.shape[0]
+    who, values = np.empty((3, many), np.int64), np.empty((6, many))
+    sliding = np.empty(many, np.bool_)
+    used = tangential_forces(
+        contacts.at_i,
+        contacts.at_j,
+        contacts.primitive,
+        m.state,
+        m.grains.contact_stiffness,
+        m.identity,
+        contacts.primitives,
+        place,
+        held,
+        who,
+        values,
+        sliding,
+    )
+    keys, slips_now = _held(contacts.keys, held)
+    return keys, slips_now, Pulls(who[:, :used].copy(), values[:, :used].copy(), sliding[:used])
+
+
+@shared
+def _near_bodies(rigid: RigidTerms | None) -> tuple[Indices, Indices]:
+    """Grain and primitive of the listed pairs of both."""
+    if rigid is None:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    used = rigid.used[0]
+    return rigid.grain[:used], rigid.primitive[:used].copy()
+
+
+@shared
+def _measured(m: Minimizer, contacts: FrictionalContacts, box: Box | None) -> tuple[Floats, Floats]:
+    """Geometry (7, K) and slips with their limits (2, K) of all pairs as they stand now."""
+    at_i, at_j, primitive = contacts.at_i, contacts.at_j, contacts.primitive
+    place, held = np.empty((7, at_i.shape[0])), np.empty((2, at_i.shape[0]))
+    rows = contacts.primitives
+    measure(at_i, at_j, primitive, m.state, rows, box, place)
+    prepare_friction(0, m.state.shape[1], m.state, contacts.terms)
+    slips(at_i, at_j, primitive, contacts.marks, m.state, contacts.terms, rows, box, place, held)
+    return place, held
+
+
+@shared
+def _held(keys: Indices, held: Floats) -> tuple[Indices, Floats]:
+    """Keys, ascending, and slips [R] of the contacts that touch; ``keys`` (K,) and ``held`` (2, K) are of all."""
+    touching = held[1] > 0.0
+    found, slips_now = keys[touching], held[0][touching]
+    order = np.argsort(found, kind="mergesort")
+    return found[order], slips_now[order]

@@ -18,13 +18,16 @@ from __future__ import annotations
 import platform
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 from llvmlite import binding
+from numba.extending import register_jitable
 
 from core import inlining
 from core.kernel_cache import keep
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 FAST_MATH = {"reassoc", "contract", "arcp", "nsz"}
 NO_GATHER = "+prefer-no-gather"
@@ -117,3 +120,13 @@ def kernel(
         return dispatcher
 
     return decorate if function is None else decorate(function)
+
+
+def shared(function: Function) -> Function:
+    """Python where Python calls it, and compiled where a kernel does.
+
+    For what is done once a list or once an increment: on the desk it would take longer to compile than it ever saves; a page has
+    nothing but kernels. Without fast math, so both come to the same bits.
+    """
+    jitable: Function = register_jitable(error_model="numpy")(function)
+    return jitable

@@ -10,11 +10,14 @@ C = 2 + (λ+1)²/(λμ) and κ = Cμ. Every function takes floats or arrays of a
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from core.arrays import Floats
 from core.errors import InputError
+from core.jit import shared
 
 DEFAULT_CONTACT_STIFFNESS = 50.0
 DEFAULT_POISSON_RATIO = 0.8
@@ -34,25 +37,23 @@ def check_material(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> No
         )
 
 
-def deformation_stiffness(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
+@shared
+def deformation_stiffness(poisson_ratio: Any, contact_stiffness: Any) -> Any:
     """κ = 4C / ((C − 2)(1 − ν²)) [k], the stiffness that makes every grain equally stiff between two plates."""
-    nu = np.asarray(poisson_ratio, dtype=np.float64)
-    stiffness = np.asarray(contact_stiffness, dtype=np.float64)
+    nu, stiffness = poisson_ratio, contact_stiffness
     return 4.0 * stiffness / ((stiffness - 2.0) * (1.0 - nu) * (1.0 + nu))
 
 
-def area_modulus(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
+@shared
+def area_modulus(poisson_ratio: Any, contact_stiffness: Any) -> Any:
     """κ(1+ν) [k]: resistance to a change of area."""
-    return deformation_stiffness(poisson_ratio, contact_stiffness) * (
-        1.0 + np.asarray(poisson_ratio, dtype=np.float64)
-    )
+    return deformation_stiffness(poisson_ratio, contact_stiffness) * (1.0 + poisson_ratio)
 
 
-def shape_modulus(poisson_ratio: ArrayLike, contact_stiffness: ArrayLike) -> Floats:
+@shared
+def shape_modulus(poisson_ratio: Any, contact_stiffness: Any) -> Any:
     """κ(1−ν) [k]: resistance to a change of shape."""
-    return deformation_stiffness(poisson_ratio, contact_stiffness) * (
-        1.0 - np.asarray(poisson_ratio, dtype=np.float64)
-    )
+    return deformation_stiffness(poisson_ratio, contact_stiffness) * (1.0 - poisson_ratio)
 
 
 def from_paper(stiffness_ratio: ArrayLike, softness: ArrayLike) -> tuple[Floats, Floats]:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.jit import kernel
+from core.jit import kernel, shared
 from core.periodic import nearest
 
 SLOT_PADDING = 8
@@ -44,7 +44,8 @@ class Lists(NamedTuple):
     start: NDArray[np.int64]  # (K + 2,)
 
 
-def allocate(grains: int, pairs: int, slots: int = 0, *, half: bool = False) -> Lists:
+@shared
+def allocate(grains: int, pairs: int, slots: int = 0, half: bool = False) -> Lists:
     """Arrays for ``grains`` grains with at most ``pairs`` pairs in all and ``slots`` neighbours for any one grain.
 
     Without slots they are enough for ``find_pairs``, and no more.
@@ -52,24 +53,23 @@ def allocate(grains: int, pairs: int, slots: int = 0, *, half: bool = False) -> 
     pairs = max(8, pairs)
     laid_out = grains if slots else 0
     entries = (1 if half else 2) * pairs + SLOT_PADDING * slots if slots else 0
-    integers = lambda n: np.zeros(n, dtype=np.int64)  # noqa: E731
     return Lists(
-        half=half,
-        width=integers(slots),
-        offset=integers(slots),
-        neighbor=np.zeros(entries, dtype=np.uint32),
-        stiffness=np.zeros(entries),
-        order=integers(laid_out),
-        cell_order=integers(grains),
-        cell_start=integers(4 * grains + 32),
-        cell_of=integers(grains),
-        sorted=np.zeros((3, grains)),
-        degree=integers(laid_out),
-        place=integers(laid_out),
-        first=integers(pairs),
-        second=integers(pairs),
-        filled=integers(laid_out),
-        start=integers(slots + 2),
+        half,
+        np.zeros(slots, np.int64),
+        np.zeros(slots, np.int64),
+        np.zeros(entries, np.uint32),
+        np.zeros(entries),
+        np.zeros(laid_out, np.int64),
+        np.zeros(grains, np.int64),
+        np.zeros(4 * grains + 32, np.int64),
+        np.zeros(grains, np.int64),
+        np.zeros((3, grains)),
+        np.zeros(laid_out, np.int64),
+        np.zeros(laid_out, np.int64),
+        np.zeros(pairs, np.int64),
+        np.zeros(pairs, np.int64),
+        np.zeros(laid_out, np.int64),
+        np.zeros(slots + 2, np.int64),
     )
 
 
@@ -239,6 +239,7 @@ def find_pairs(state, skin, lists, box):
     return pairs
 
 
+@shared
 def rebuild(
     state: NDArray[np.float64],
     contact_stiffness: NDArray[np.float64],
@@ -248,7 +249,7 @@ def rebuild(
 ) -> int:
     """Find all pairs and lay them out in slots for grains standing in ``lists.order``. Returns FIT, PAIRS_FULL or SLOTS_FULL."""
     pairs = find_pairs(state, skin, lists, box)
-    return PAIRS_FULL if pairs < 0 else int(lay_out(pairs, contact_stiffness, lists))
+    return PAIRS_FULL if pairs < 0 else lay_out(pairs, contact_stiffness, lists)
 
 
 @kernel

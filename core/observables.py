@@ -11,10 +11,11 @@ from core import neighbors, rigid_contacts
 from core.arrays import Floats
 from core.contacts import grain_overlap
 from core.endless import endless
-from core.jit import kernel
+from core.jit import kernel, shared
 from core.packing import Packing
 
 Indices = NDArray[np.int64]
+Box = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -114,60 +115,65 @@ def _measure_rigid(state, support, stiffness, rigid, box, values):
     return used
 
 
-def support_coefficients(packing: Packing) -> Floats:
-    """s, u, v of every grain (3, N): h(φ)² = s + u cos 2φ + v sin 2φ [R²]."""
-    p, q1, q2 = packing.state[2:]
-    return np.ascontiguousarray([p * p + q1 * q1 + q2 * q2, 2.0 * p * q1, 2.0 * p * q2])
+@shared
+def support_coefficients(state: Floats) -> Floats:
+    """s, u, v of every grain (3, N), its ``state`` (5, N): h(φ)² = s + u cos 2φ + v sin 2φ [R²]."""
+    p, q1, q2 = state[2], state[3], state[4]
+    support = np.empty((3, p.shape[0]))
+    support[0] = p * p + q1 * q1 + q2 * q2
+    support[1] = 2.0 * p * q1
+    support[2] = 2.0 * p * q2
+    return support
 
 
 def grain_contacts(packing: Packing) -> GrainContacts:
     """All contacts between grains of a packing."""
-    count = len(packing)
-    if count == 0:
-        none, zero = np.zeros(0, dtype=np.int64), np.zeros(0)
-        return GrainContacts(none, none, zero, zero, zero, zero, zero, zero)
     box = None if packing.box is None else packing.box.kernel_form()
+    i, j, values = touching_grains(packing.state, packing.contact_stiffness, box)
+    return GrainContacts(i, j, *values)
+
+
+@shared
+def touching_grains(
+    state: Floats, stiffness: Floats, box: Box | None
+) -> tuple[Indices, Indices, Floats]:
+    """The same of grains in ``state`` (5, N) with contact stiffnesses (N,) [k]: i, j, and the rest as rows (6, K)."""
+    count = state.shape[1]
     room = 4 * count
-    while True:
-        lists = neighbors.allocate(count, room)
-        pairs = neighbors.find_pairs(packing.state, 0.0, lists, box)
-        if pairs >= 0:
-            break
+    lists = neighbors.allocate(count, room)
+    pairs = neighbors.find_pairs(state, 0.0, lists, box) if count else 0
+    while pairs < 0:
         room *= 2
-    values = np.empty((6, pairs))
-    support = support_coefficients(packing)
-    used = _measure_pairs(
-        packing.state,
-        support,
-        packing.contact_stiffness,
-        pairs,
-        lists.first,
-        lists.second,
-        box,
-        values,
-    )
-    return GrainContacts(lists.first[:used].copy(), lists.second[:used].copy(), *values[:, :used])
+        lists = neighbors.allocate(count, room)
+        pairs = neighbors.find_pairs(state, 0.0, lists, box)
+    values, first, second = np.empty((6, pairs)), lists.first, lists.second
+    support = support_coefficients(state)
+    used = _measure_pairs(state, support, stiffness, pairs, first, second, box, values)
+    return first[:used].copy(), second[:used].copy(), values[:, :used]
 
 
 def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
-    if not len(primitives):
-        none = np.zeros(0, dtype=np.int64)
-        return RigidContacts(none, none, *np.zeros((8, 0)))
-    primitives = endless(primitives, packing.box)
-    rigid = rigid_contacts.allocate(primitives, max(len(packing), 1))
     box = None if packing.box is None else packing.box.kernel_form()
-    while not rigid_contacts.find_rigid_pairs(packing.state, rigid, 0.0, box):
-        room = 2 * len(rigid.grain)
-        rigid = rigid._replace(
-            grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
-        )
-    values = np.empty((8, int(rigid.used[0])))
-    support = support_coefficients(packing)
-    used = _measure_rigid(packing.state, support, packing.contact_stiffness, rigid, box, values)
-    return RigidContacts(
-        rigid.grain[:used].copy(), rigid.primitive[:used].copy(), *values[:, :used]
-    )
+    rows = np.ascontiguousarray(endless(primitives, packing.box), dtype=np.float64)
+    grain, primitive, values = touching_bodies(packing.state, packing.contact_stiffness, rows, box)
+    return RigidContacts(grain, primitive, *values)
+
+
+@shared
+def touching_bodies(
+    state: Floats, stiffness: Floats, primitives: Floats, box: Box | None
+) -> tuple[Indices, Indices, Floats]:
+    """The same of grains in ``state`` (5, N) with contact stiffnesses (N,) [k]: grain, primitive, and the rest as rows (8, K).
+
+    ``primitives`` are as ``endless`` has them.
+    """
+    rigid = rigid_contacts.allocate(primitives, max(state.shape[1], 1))
+    while not rigid_contacts.find_rigid_pairs(state, rigid, 0.0, box):
+        rigid = rigid_contacts.doubled(rigid)
+    values = np.empty((8, rigid.used[0]))
+    used = _measure_rigid(state, support_coefficients(state), stiffness, rigid, box, values)
+    return rigid.grain[:used].copy(), rigid.primitive[:used].copy(), values[:, :used]
 
 
 def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Floats:
@@ -175,14 +181,21 @@ def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Flo
 
     ``owner`` (M,) names the body of each primitive, ``placement`` (B, 3) where the bodies are.
     """
-    body = owner[contacts.primitive]
+    x, y = contacts.x + contacts.image_x, contacts.y + contacts.image_y
     total = np.zeros((len(placement), 3))
-    lever_x = contacts.x + contacts.image_x - placement[body, 0]
-    lever_y = contacts.y + contacts.image_y - placement[body, 1]
-    np.add.at(total[:, 0], body, -contacts.fx)
-    np.add.at(total[:, 1], body, -contacts.fy)
-    np.add.at(total[:, 2], body, -(lever_x * contacts.fy - lever_y * contacts.fx))
+    push_bodies(owner[contacts.primitive], contacts.fx, contacts.fy, x, y, placement, total)
     return total
+
+
+@kernel
+def push_bodies(body, fx, fy, x, y, placement, total):
+    """Add to ``total`` (B, 3) what the opposites of forces (L,) [k R] on grains, at (x, y) [R], do to the ``body`` of each."""
+    for k in range(body.shape[0]):
+        b = body[k]
+        lever_x, lever_y = x[k] - placement[b, 0], y[k] - placement[b, 1]
+        total[b, 0] += -fx[k]
+        total[b, 1] += -fy[k]
+        total[b, 2] += -(lever_x * fy[k] - lever_y * fx[k])
 
 
 def stress(
@@ -236,7 +249,7 @@ def grain_stress(
     dy = np.concatenate([pairs.dy, pairs.dy, ny])
     square = np.maximum(dx * dx + dy * dy, 1e-290)
     c2, s2 = (dx * dx - dy * dy) / square, 2.0 * dx * dy / square
-    s, u, v = support_coefficients(packing)[:, grain]
+    s, u, v = support_coefficients(packing.state)[:, grain]
     work = force * np.sqrt(np.maximum(s + u * c2 + v * s2, 0.0))
     p, q1, q2 = packing.state[2:]
     area = np.pi * (p * p - q1 * q1 - q2 * q2)

@@ -7,39 +7,48 @@ whose centre has come past a face is pushed on to the other side.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.arrays import Floats
-from core.observables import RigidContacts
-from core.packing import Packing
+from core.jit import kernel, shared
 from core.rigid_contacts import EDGE
 
-
-def deep_grains(packing: Packing, contacts: RigidContacts, step: float) -> set[int]:
-    """The grains so deep in a body that one more step [R] could take its face past their centre."""
-    deep = contacts.overlap + step >= packing.semi_axes[1][contacts.grain]
-    return set(contacts.grain[deep].tolist())
+Indices = NDArray[np.int64]
 
 
-def passed_faces(
-    contacts: RigidContacts, start: Floats, state: Floats, rows_then: Floats, rows_now: Floats
-) -> set[tuple[int, int]]:
-    """Grain and primitive, for the grains of ``contacts`` that have crossed a face that they touched, on a straight way.
+@shared
+def deep_grains(state: Floats, grain: Indices, overlap: Floats, step: float) -> NDArray[np.bool_]:
+    """True for the grains (N,) so deep in a body that one more step [R] could take its face past their centre.
 
-    ``start`` and ``state`` (5, N) are the grains before and after, ``rows_then`` and ``rows_now`` (M, 8) the primitives. For
-    small moves only: after a long one nobody can tell a way through from one around.
+    ``state`` is (5, N); ``grain`` and ``overlap`` (K,) [R] are of the contacts with bodies.
     """
-    face = rows_now[contacts.primitive, 0] == EDGE
-    grain, primitive = contacts.grain[face], contacts.primitive[face]
-    image = np.array([contacts.image_x[face], contacts.image_y[face]])
-    along, beyond = [], []
-    for places, rows in ((start, rows_then[primitive]), (state, rows_now[primitive])):
-        dx, dy = places[:2, grain] + image - rows[:, 1:3].T
-        ux, uy = rows[:, 3], rows[:, 4]
-        along.append(dx * ux + dy * uy)
-        beyond.append(ux * dy - uy * dx)
-    length = (rows[:, 5] - rows[:, 1]) * ux + (rows[:, 6] - rows[:, 2]) * uy
-    changed = (beyond[0] >= 0.0) != (beyond[1] >= 0.0)
-    way = np.where(changed, beyond[0] - beyond[1], 1.0)
-    crossing = along[0] + (along[1] - along[0]) * beyond[0] / way
-    passed = changed & (crossing >= 0.0) & (crossing <= length)
-    return set(zip(grain[passed].tolist(), primitive[passed].tolist(), strict=True))
+    shorter = state[2] - np.sqrt(state[3] * state[3] + state[4] * state[4])
+    deep = np.zeros(state.shape[1], np.bool_)
+    deep[grain[overlap + step >= shorter[grain]]] = True
+    return deep
+
+
+@kernel
+def pass_faces(grain, primitive, image_x, image_y, start, state, rows_then, rows_now, crossed):
+    """Mark in ``crossed`` (N, M) the grains that have crossed a face that they touched, on a straight way.
+
+    ``grain`` to ``image_y`` (K,) are of the contacts with bodies before, ``start`` and ``state`` (5, N) the grains before and
+    after, ``rows_then`` and ``rows_now`` (M, 8) the primitives. For small moves only: after a long one nobody can tell a way
+    through from one around.
+    """
+    for k in range(grain.shape[0]):
+        i, m = grain[k], primitive[k]
+        if rows_now[m, 0] != EDGE:
+            continue
+        ix, iy = image_x[k], image_y[k]
+        ux, uy = rows_then[m, 3], rows_then[m, 4]
+        dx, dy = start[0, i] + ix - rows_then[m, 1], start[1, i] + iy - rows_then[m, 2]
+        along, beyond = dx * ux + dy * uy, ux * dy - uy * dx
+        ux, uy = rows_now[m, 3], rows_now[m, 4]
+        dx, dy = state[0, i] + ix - rows_now[m, 1], state[1, i] + iy - rows_now[m, 2]
+        along_now, beyond_now = dx * ux + dy * uy, ux * dy - uy * dx
+        length = (rows_now[m, 5] - rows_now[m, 1]) * ux + (rows_now[m, 6] - rows_now[m, 2]) * uy
+        if (beyond >= 0.0) != (beyond_now >= 0.0):
+            crossing = along + (along_now - along) * beyond / (beyond - beyond_now)
+            if crossing >= 0.0 and crossing <= length:
+                crossed[i, m] = True

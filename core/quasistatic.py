@@ -23,7 +23,7 @@ from core.errors import InputError
 from core.friction import Friction
 from core.frictional_contacts import FrictionForces
 from core.packing import Packing, PeriodicBox
-from core.passage import deep_grains, passed_faces
+from core.passage import deep_grains, pass_faces
 from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point, RigidWorld
 from core.settings import LONGEST_STEP
@@ -64,10 +64,9 @@ class Quasistatic:
         self._start: Floats = packing.state.copy()
         self._start_box = packing.box
         self._placement: Floats = world.placement()
-        self._deep: set[int] = set()  # grains deep in a body when the relaxation began
-        self._through: set[tuple[int, int]] = (
-            set()
-        )  # and those that were moved through one, see ``passage``
+        # Grains deep in a body when the relaxation began (N,), and those that were moved through a face (N, M), see ``passage``.
+        self._deep = np.zeros(0, dtype=np.bool_)
+        self._through = np.zeros((0, 0), dtype=np.bool_)
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
         self._own_motion: Floats = np.zeros_like(self._carried)
@@ -160,7 +159,7 @@ class Quasistatic:
         if self.system.relaxes:
             # Before anything moves: a prediction that flattens a grain would make it look deep already.
             touched = (self._contacts or self.contacts())[1]
-            self._deep = deep_grains(self.packing, touched, self.system.solver.step)
+            self._deep = self._deep_in(touched)
         self._placement = self.world.placement()
         rows_then, owner = self.world.primitives()
         rows_then = endless(rows_then, self.packing.box)
@@ -182,7 +181,9 @@ class Quasistatic:
         if self.system.relaxes:
             rows_now = endless(primitives, self.packing.box)
             places = self._start, self.packing.state, rows_then, rows_now
-            self._through = passed_faces(touched, *places)
+            self._through = np.zeros((len(self.packing), len(primitives)), dtype=np.bool_)
+            which = touched.grain, touched.primitive, touched.image_x, touched.image_y
+            pass_faces(*which, *places, self._through)
         solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
@@ -222,8 +223,8 @@ class Quasistatic:
         self._relaxation = relaxation = None  # its arrays make room for those of the contacts
         if relaxed:
             contacts = self.contacts()
-            deep = deep_grains(self.packing, contacts[1], self.system.solver.step)
-            if self._through or deep - self._deep:
+            deep = self._deep_in(contacts[1])
+            if self._through.any() or np.any(deep & ~self._deep):
                 report = replace(report, reason=StopReason.SUNK)
         good = report.reason not in FAILED
         remembered = self._remembered()
@@ -257,6 +258,11 @@ class Quasistatic:
         if forces is not None and self.friction is not None:
             beyond = forces.beyond_cone(self.friction.coefficient, pairs, bodies)
         return self._observe(report, unbalanced, forces, beyond)
+
+    def _deep_in(self, bodies: observables.RigidContacts) -> NDArray[np.bool_]:
+        """The grains (N,) that are deep in a body."""
+        step = self.system.solver.step
+        return deep_grains(self.packing.state, bodies.grain, bodies.overlap, step)
 
     def _remembered(self) -> Friction | None:
         """What frictional contacts remember, where the increment may have to be done again."""

@@ -8,21 +8,19 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from core import fire, neighbors, rigid_contacts
+from core import fire, rigid_contacts
 from core.endless import endless
 from core.errors import InputError
-from core.friction import SPIN_MASS
-from core.frictional_contacts import FrictionalContacts, FrictionForces, Origin
-from core.material import area_modulus, deformation_stiffness, shape_modulus
+from core.frictional_contacts import FrictionForces, Origin, before_lists, ended
+from core.minimizer import cross, limits_for, minimizer_for, new_lists
 from core.packing import Packing
-from core.slip import TANGENTIAL_STIFFNESS, FrictionTerms
+from core.slip import FrictionTerms
 from core.sweeps import collapsed
 from core.threads import running, share
 
 DEFAULT_TOLERANCE = 1e-2
 DEFAULT_FORCE_FLOOR = 1e-3
 DEFAULT_SKIN = 0.3
-SKIN_SPAN = 4.0  # of the smallest radius, where that is less than the largest: else small grains list far too many neighbours
 
 
 class StopReason(StrEnum):
@@ -94,31 +92,33 @@ class Relaxation:
         count = len(packing)
         self._box = None if packing.box is None else packing.box.kernel_form()
         _check_box(packing, skin)
+        rows = endless(np.zeros((0, 8)) if primitives is None else primitives, packing.box)
+        self._primitives = np.ascontiguousarray(rows)
         self._rigid = None
-        if primitives is not None and len(primitives):
-            self._rigid = rigid_contacts.allocate(endless(primitives, packing.box), max(count, 1))
-        self._friction = None if friction is None else FrictionalContacts(friction, self._rigid)
+        if len(rows):
+            self._rigid = rigid_contacts.allocate(self._primitives, max(count, 1))
+        self._origin = friction
+        self._contacts = None if friction is None else before_lists(friction, self._primitives)
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
-        self._through: set[tuple[int, int]] = set()
+        # Which grains have gone through which edges, turned over each time.
+        self._crossed = np.zeros((count, len(rows)), dtype=np.bool_)
         self.threads = threads
         self._shared = share(threads, count)
-        stiffest = float(packing.contact_stiffness.max()) if count else 1.0
-        if friction is not None:
-            stiffest *= 1.0 + TANGENTIAL_STIFFNESS
-        smallest = float(packing.rest_radius.min()) if count else 1.0
-        largest = float(packing.rest_radius.max()) if count else 1.0
-        self._limits = fire.Limits(
-            tolerance=float(tolerance),
-            force_floor=float(force_floor),
-            dt_max=fire.DT_FACTOR / np.sqrt(stiffest),
-            clamp=0.1 * smallest,
-            skin=skin * min(largest, SKIN_SPAN * smallest),
+        spins = friction is not None
+        grains = packing.rest_radius, packing.contact_stiffness
+        self._limits = limits_for(*grains, spins, float(tolerance), float(force_floor), skin)
+        self._minimizer = minimizer_for(
+            packing.state,
+            packing.rest_radius,
+            packing.poisson_ratio,
+            packing.contact_stiffness,
+            spins,
+            self._limits.dt_max,
         )
-        control = fire.fresh_control(self._limits.dt_max)
+        control = self._minimizer.control
         if not count:
             control["start_energy"] = 0.0
-        self._minimizer = _minimizer(packing, friction is not None, control)
         self._reason = StopReason.BUDGET if count else StopReason.CONVERGED
         if not np.all(np.isfinite(packing.state)):
             # The neighbour search would lose such a grain without a word.
@@ -166,9 +166,15 @@ class Relaxation:
             iterations=self.iterations,
         )
 
-    def gone_through(self) -> set[tuple[int, int]]:
-        """Grain and primitive, for the grains that have gone through an edge since the bodies came to rest."""
-        return self._through ^ self._changed_sides()
+    def gone_through(self) -> NDArray[np.bool_]:
+        """Which grains have gone through which edges (N, M) since the bodies came to rest."""
+        crossed = self._crossed.copy()
+        self._cross(crossed)
+        return crossed
+
+    def _cross(self, crossed: NDArray[np.bool_]) -> None:
+        if self._rigid is not None and self._listed:
+            cross(self._minimizer, self._rigid, self._box, crossed)
 
     def write_back(self) -> None:
         """Put the relaxed state into the packing, in the packing's own order."""
@@ -183,12 +189,13 @@ class Relaxation:
     @property
     def friction_terms(self) -> FrictionTerms | None:
         """What the kernels know of the frictional contacts of the lists as they are; None without friction."""
-        return None if self._friction is None else self._friction.terms
+        return None if self._contacts is None else self._contacts.terms
 
     def slips(self) -> tuple[NDArray[np.int64], NDArray[np.float64], FrictionForces]:
-        """What frictional contacts remember, and their forces: see ``FrictionalContacts.end``. Only with friction."""
-        assert self._friction is not None
-        return self._friction.end(self._minimizer, self._box)
+        """What frictional contacts remember, keys and slips [R], and their forces. Only with friction."""
+        assert self._contacts is not None
+        keys, slips, pulls = ended(self._minimizer, self._contacts, self._box)
+        return keys, slips, FrictionForces.of(pulls)
 
     def forces(self) -> NDArray[np.float64]:
         """Generalised forces (5, N), with friction (6, N), of the latest evaluation [k R], in the packing's own order."""
@@ -196,46 +203,18 @@ class Relaxation:
         forces[:, self._minimizer.identity] = self._minimizer.force
         return forces
 
-    def _changed_sides(self) -> set[tuple[int, int]]:
-        """Grain and primitive, for the grains that have gone through an edge since the lists were made."""
-        m, rigid = self._minimizer, self._rigid
-        if rigid is None or not self._listed:
-            return set()
-        changed = np.flatnonzero(
-            rigid_contacts.changed_sides(m.reference, m.state, rigid, self._box)
-        )
-        grains, primitives = m.identity[rigid.grain[changed]], rigid.primitive[changed]
-        return set(zip(grains.tolist(), primitives.tolist(), strict=True))
-
     def _relist(self) -> None:
         # At new lists, as no grain has then come far since the last: later nobody can tell a way through from one around.
-        self._through ^= self._changed_sides()
+        self._cross(self._crossed)
         self._listed = True
-        friction = self._friction
-        if friction is not None:
-            friction.commit(self._minimizer, self._box)
-        while True:
-            answer = fire.relist(self._minimizer, self._box, self._rigid, self._limits.skin)
-            if answer == neighbors.FIT:
-                if friction is not None:
-                    friction.relist(self._minimizer, self._rigid, self._box)
-                return
-            lists = self._minimizer.lists
-            grains, pairs, slots = len(self.packing), len(lists.first), len(lists.width)
-            if answer == neighbors.RIGID_FULL:
-                assert self._rigid is not None
-                room = 2 * len(self._rigid.grain)
-                self._rigid = self._rigid._replace(
-                    grain=np.zeros(room, dtype=np.int64), primitive=np.zeros(room, dtype=np.int64)
-                )
-                continue
-            if answer == neighbors.PAIRS_FULL:
-                pairs *= 2
-            else:
-                slots *= 2
-            self._minimizer = self._minimizer._replace(
-                lists=neighbors.allocate(grains, pairs, slots, half=lists.half)
-            )
+        self._minimizer, self._rigid, self._contacts = new_lists(
+            self._minimizer,
+            self._rigid,
+            self._origin,
+            self._contacts,
+            self._box,
+            self._limits.skin,
+        )
 
 
 def _check_box(packing: Packing, skin: float) -> None:
@@ -259,39 +238,3 @@ def _weight(
         return None
     x, y = (0.0, 0.0) if gravity is None else gravity
     return fire.Weight(float(x), float(y), float(drag), packing.state[:2].copy())
-
-
-def _minimizer(packing: Packing, spins: bool, control: NDArray[np.void]) -> fire.Minimizer:
-    count = len(packing)
-    nu, stiffness = packing.poisson_ratio, packing.contact_stiffness
-    rest_area = packing.rest_radius**2
-    shape_stiffness = 2.0 * shape_modulus(nu, stiffness)
-    # A grain that resists area or shape far more than a contact does is made heavier, so that dt need not shrink for it.
-    own = 2.0 * deformation_stiffness(nu, stiffness) * (1.0 + np.abs(nu))
-    mass = fire.SHAPE_MASS * np.maximum(1.0, own / (fire.SHAPE_MASS * stiffness))
-    rows = 6 if spins else 5
-    inverse_mass = np.ones((rows, count))
-    inverse_mass[2:5] = 1.0 / mass
-    state = np.zeros((rows, count))
-    state[:5] = packing.state
-    if spins:
-        inverse_mass[5] = 1.0 / (SPIN_MASS * rest_area)
-    return fire.Minimizer(
-        state=state,
-        velocity=np.zeros((rows, count)),
-        force=np.zeros((rows, count)),
-        inverse_mass=inverse_mass,
-        reference=np.zeros((rows, count)),
-        support=np.zeros((3, count)),
-        grains=fire.Grains(
-            contact_stiffness=stiffness.copy(),
-            rest_area=rest_area,
-            area_stiffness=area_modulus(nu, stiffness) / rest_area,
-            shape_stiffness=shape_stiffness,
-        ),
-        lists=neighbors.allocate(count, 4 * count, 24, half=spins),
-        identity=np.arange(count),
-        scratch=np.zeros(count),
-        scratch_identity=np.zeros(count, dtype=np.int64),
-        control=control,
-    )

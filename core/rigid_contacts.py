@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.jit import kernel
+from core.jit import kernel, shared
 from core.slip import TANGENTIAL_STIFFNESS, body_slip, cut, own_way
 
 EDGE, VERTEX, DISC = 0, 1, 2
@@ -40,14 +40,22 @@ class RigidTerms(NamedTuple):
     used: NDArray[np.int64]  # (1,) length of the list
 
 
+@shared
 def allocate(primitives: NDArray[np.float64], grains: int) -> RigidTerms:
-    """Terms for ``grains`` grains near ``primitives`` (M, 8). Who finds the room too short doubles it."""
-    capacity = 64 + 2 * grains
+    """Terms for ``grains`` grains near ``primitives`` (M, 8)."""
+    return _with_room(primitives, 64 + 2 * grains)
+
+
+@shared
+def doubled(rigid: RigidTerms) -> RigidTerms:
+    """The same with room for twice as many pairs, none of which is listed."""
+    return _with_room(rigid.primitives, 2 * rigid.grain.shape[0])
+
+
+@shared
+def _with_room(primitives: NDArray[np.float64], pairs: int) -> RigidTerms:
     return RigidTerms(
-        np.ascontiguousarray(primitives, dtype=np.float64),
-        np.zeros(capacity, dtype=np.int64),
-        np.zeros(capacity, dtype=np.int64),
-        np.zeros(1, dtype=np.int64),
+        primitives, np.zeros(pairs, np.int64), np.zeros(pairs, np.int64), np.zeros(1, np.int64)
     )
 
 

@@ -147,7 +147,7 @@ def _off(points: Floats, start: Floats, end: Floats) -> Floats:
 
 def _reach(packing: Packing, dx: Floats, dy: Floats, distance: Floats) -> Floats:
     """How far grains reach from their centre along (dx, dy) [R]; the last axis is that of the grains."""
-    s, u, v = observables.support_coefficients(packing)
+    s, u, v = observables.support_coefficients(packing.state)
     square = np.maximum(distance * distance, 1e-290)
     c2, s2 = (dx * dx - dy * dy) / square, 2.0 * dx * dy / square
     reach: Floats = np.sqrt(np.maximum(s + u * c2 + v * s2, 0.0))

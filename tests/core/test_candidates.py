@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.candidates import NONE, find_corners, recall, round_corners
+from core.candidates import NONE, begin_marks, find_corners, round_corners
 from core.frictional_contacts import BEYOND, FrictionForces
 from core.observables import GrainContacts, RigidContacts
 from core.rigid import RigidBody, RigidWorld
@@ -19,10 +19,12 @@ from core.rigid_contacts import EDGE, VERTEX
 def test_a_pair_recalls_what_was_kept_under_its_key(kept: set[int], asked: list[int]) -> None:
     keys = np.array(sorted(kept), dtype=np.int64)
     slips = 1.0 + keys
-    slip, known = np.full(len(asked), np.nan), np.ones(len(asked), dtype=np.bool_)
-    recall(np.array(asked, dtype=np.int64), keys, slips, slip, known)
+    marks, known = np.full((4, len(asked)), np.nan), np.ones(len(asked), dtype=np.bool_)
+    place = np.arange(7.0)[:, None] - np.arange(len(asked))
+    begin_marks(place, np.array(asked, dtype=np.int64), keys, slips, marks, known)
     assert known.tolist() == [key in kept for key in asked]
-    assert slip.tolist() == [1.0 + key if key in kept else 0.0 for key in asked]
+    assert marks[0].tolist() == [1.0 + key if key in kept else 0.0 for key in asked]
+    assert np.array_equal(marks[1:], [np.maximum(place[0], 0.0), place[1], place[2]])
 
 
 def test_a_vertex_knows_the_edges_that_meet_in_it() -> None:

@@ -304,7 +304,7 @@ def test_off_leaves_no_trace() -> None:
     relaxation = engine._relaxation
     assert relaxation is not None
     engine.relax(20_000)
-    assert relaxation._friction is None
+    assert relaxation._contacts is None
     assert relaxation.friction_terms is None
     for array in relaxation._minimizer[:5]:
         assert array.shape[0] == (3 if array is relaxation._minimizer.support else 5)

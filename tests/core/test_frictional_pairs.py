@@ -29,11 +29,11 @@ def stretch(p: float, q1: float, q2: float) -> Floats:
 def own_contacts(relaxation: Relaxation) -> Floats:
     """Forces of the contacts on x, y, p, q1, q2 and spin (6, N), from equations (1) and (10) of MODEL.md, for each grain from
     its own side: with a pair (i, j) comes, by itself, the pair (j, i)."""
-    m, friction = relaxation._minimizer, relaxation._friction
+    m, friction = relaxation._minimizer, relaxation._contacts
     assert friction is not None
     terms, c = friction.terms, m.grains.contact_stiffness
     forces = np.zeros_like(m.force)
-    pairs = zip(friction._at_i.tolist(), friction._at_j.tolist(), friction._marks.T, strict=True)
+    pairs = zip(friction.at_i.tolist(), friction.at_j.tolist(), friction.marks.T, strict=True)
     for first, second, mark in pairs:
         for i, j, side in ((first, second, 1.0), (second, first, -1.0)):
             d = np.array(nearest.py_func(*(m.state[:2, j] - m.state[:2, i]), relaxation._box))

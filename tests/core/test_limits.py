@@ -62,7 +62,8 @@ def test_no_increment_that_is_kept_has_pressed_a_grain_as_deep_as_one_step_from_
     """Not only the last of them: what is deep when the next one begins would pass for having been so before."""
     engine = press(50.0, step)
     while (done := increment(engine, -1.0)).report.reason not in FAILED:
-        assert deep_grains(engine.packing, done.body_contacts, step) == set()
+        bodies = done.body_contacts
+        assert not deep_grains(engine.packing.state, bodies.grain, bodies.overlap, step).any()
     assert done.report.reason is StopReason.SUNK
 
 

@@ -69,7 +69,7 @@ def test_a_grain_far_inside_an_edge_is_not_beyond_its_end(
 ) -> None:
     """The short way asks for no root, and never says otherwise than the long one; far enough inside it does answer."""
     packing = grain(a, share * a, tilt)
-    s, u, v = (float(c[0]) for c in observables.support_coefficients(packing))
+    s, u, v = (float(c[0]) for c in observables.support_coefficients(packing.state))
     ux, uy = math.cos(direction), math.sin(direction)
     dx, dy = along * ux - off * uy, along * uy + off * ux
     inside = -(dx * ux + dy * uy)

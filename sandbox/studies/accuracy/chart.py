@@ -16,6 +16,7 @@ import numpy as np
 
 from core import fire, sweeps
 from core.jit import kernel
+from core.minimizer import fresh_control
 from core.problem import Problem
 from core.relaxation import Relaxation
 from core.steering import steer
@@ -122,7 +123,7 @@ def paper_chart(
     chart = np.empty_like(m.state)
     to_chart(m.state, chart)
     velocity, turned = np.zeros_like(chart), np.zeros_like(chart)
-    control = fire.fresh_control(limits.dt_max)
+    control = fresh_control(limits.dt_max)
     left = most
     while True:
         m = relaxation._minimizer

@@ -15,6 +15,7 @@ from core.arrays import Floats
 from core.friction import Friction
 from core.generate import Recipe, pack
 from core.jit import kernel
+from core.minimizer import relist
 from core.relaxation import Relaxation
 from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
@@ -209,7 +210,7 @@ def measure_iteration(grains: int, seconds: float) -> dict[str, Any]:
 
     def rebuild(times: int) -> None:
         for _ in range(times):
-            fire.relist(m, box, None, skin)
+            relist(m, box, None, skin)
 
     jobs: dict[str, Callable[[int], object]] = {
         "rebuild": rebuild,

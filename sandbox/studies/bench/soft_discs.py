@@ -21,6 +21,7 @@ from core import fire, neighbors
 from core.arrays import Floats
 from core.errors import InputError
 from core.files import atomic_write
+from core.minimizer import fresh_control, relist
 from core.packing import PeriodicBox
 
 SIZE_RATIO, PACKING_FRACTION = 1.4, 0.90
@@ -108,7 +109,7 @@ def minimizer(discs: SoftDiscs) -> fire.Minimizer:
         identity=np.arange(count),
         scratch=np.zeros(count),
         scratch_identity=np.zeros(count, dtype=np.int64),
-        control=fire.fresh_control(fire.DT_FACTOR),
+        control=fresh_control(fire.DT_FACTOR),
     )
 
 
@@ -128,7 +129,7 @@ def relax(discs: SoftDiscs) -> Relaxed:
             code, used = fire.run(m, box, None, None, None, limits, due - iterations, None)
             iterations += used
             if code == fire.LISTS_STALE:
-                if fire.relist(m, box, None, SKIN) != neighbors.FIT:
+                if relist(m, box, None, SKIN) != neighbors.FIT:
                     raise RuntimeError("the neighbour lists are too short for these discs")
             elif code != fire.BUDGET:
                 raise RuntimeError(f"the relaxation of soft discs ended with {code}")

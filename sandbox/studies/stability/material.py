@@ -74,7 +74,8 @@ def cases() -> Iterator[Case]:
 def finest(nu: ArrayLike, stiffness: ArrayLike) -> NDArray[np.float64]:
     """A relative residual that rounding allows: lengths are known to 1e-15 R, a force of 0.01 k R to 1e-13 of the stiffness."""
     stiffest = np.maximum(stiffness, 2.0 * deformation_stiffness(nu, stiffness))
-    return np.maximum(1e-10, 1e-12 * stiffest)
+    least: NDArray[np.float64] = np.maximum(1e-10, 1e-12 * stiffest)
+    return least
 
 
 def _plates(nu: float, stiffness: float) -> Act:

@@ -29,13 +29,13 @@ def arch(state, contacts, side, base):
     n = state.shape[1]
     member = np.zeros(n, np.int64)
     total = 0.0
-    for k in range(contacts.pairs):
+    for k in range(contacts.i.shape[0]):
         total += contacts.pair[FORCE, k]
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         total += contacts.body[FORCE, k]
-    weak = WEAK * total / max(contacts.pairs + contacts.bodies, 1)
+    weak = WEAK * total / max(contacts.i.shape[0] + contacts.grain.shape[0], 1)
     best, end = np.full(n, np.inf), np.full(n, np.inf)
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         i = contacts.grain[k]
         if side[k] != 0 and contacts.body[FORCE, k] > weak:
             way = cost(
@@ -54,7 +54,7 @@ def arch(state, contacts, side, base):
         if here < 0:
             break
         done[here] = True
-        for k in range(contacts.pairs):
+        for k in range(contacts.i.shape[0]):
             i, j = contacts.i[k], contacts.j[k]
             if contacts.pair[FORCE, k] <= weak or (i != here and j != here):
                 continue
@@ -80,14 +80,14 @@ def bearing(grains, contacts, owner, body):
     """1 for the grains (N,) of ``scenes.bearing.bearing``, and how many they are; −1 where nothing touches the body."""
     reached = np.zeros(grains, np.int64)
     most, touched = 0.0, False
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         if owner[contacts.primitive[k]] == body:
             touched = True
             most = max(most, contacts.body[FORCE, k])
     if not touched:
         return reached, -1
     least, count = SHARE * most, 0
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         i = contacts.grain[k]
         if owner[contacts.primitive[k]] == body and contacts.body[FORCE, k] >= least:
             count += 1 - reached[i]
@@ -95,7 +95,7 @@ def bearing(grains, contacts, owner, body):
     further = True
     while further:
         further = False
-        for k in range(contacts.pairs):
+        for k in range(contacts.i.shape[0]):
             i, j = contacts.i[k], contacts.j[k]
             if contacts.pair[FORCE, k] >= least and reached[i] != reached[j]:
                 reached[i] = reached[j] = 1

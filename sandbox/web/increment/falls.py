@@ -73,7 +73,7 @@ def who_took_part(kept, system, contacts):
     for i in range(n):
         place[label[i]] = i
     weight, there = np.zeros(n), np.zeros(before, np.bool_)
-    for k in range(contacts.pairs):
+    for k in range(contacts.i.shape[0]):
         i, j, change = contacts.i[k], contacts.j[k], contacts.pair[FORCE, k]
         mine = key(label[i], label[j])
         for old in range(before):
@@ -109,7 +109,7 @@ def remember(kept, system, contacts):
     drive[DRIVE.felt] += math.sqrt(fx * fx + fy * fy)
     drive[DRIVE.asked] = system.wanted[body, ASKED]
     drive[DRIVE.moved_x], drive[DRIVE.moved_y] = system.past.moved[body]
-    pairs = min(contacts.pairs, kept.ints[SIZES.contacts])
+    pairs = min(contacts.i.shape[0], kept.ints[SIZES.contacts])
     keys, forces = (
         ints_at(kept, PART.pair_before, pairs),
         floats_at(kept, PART.force_before, pairs),

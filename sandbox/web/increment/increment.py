@@ -12,23 +12,19 @@ import numpy as np
 
 from core import fire
 from core.arrays import Floats
+from core.frictional_contacts import Origin, Pulls, before_lists
 from core.hand import MOST_TRIES, SHORTEST, SLACK
 from core.jit import kernel
+from core.passage import deep_grains, pass_faces
 from sandbox.web.increment.bodies import hand_force, move_bodies, rows_of, too_much
-from sandbox.web.increment.contacts import (
-    Touching,
-    deep_grains,
-    pass_faces,
-    reactions,
-    touching,
-)
-from sandbox.web.increment.frictional import Origin, Pulls, no_pulls
+from sandbox.web.increment.contacts import IMAGE_X, IMAGE_Y, OVERLAP, Touching, reactions, touching
 from sandbox.web.increment.relaxation import (
     BUDGET,
     COLLAPSED,
     ITERATION_LIMIT,
     NOT_FINITE,
     SUNK,
+    no_pulls,
     relax,
 )
 from sandbox.web.increment.systems import ASKED, TURN, X, Y
@@ -71,6 +67,7 @@ def origin_of(system, rows, before):
     return Origin(
         system.settings.coefficient,
         system.grains.state.copy(),
+        None,
         rows,
         turn,
         system.grains.label,
@@ -105,11 +102,9 @@ def predict(grains, past, moved, contacts):
         return
     share = min(along / before, 1.0)
     held = np.zeros(grains.label.shape[0])
-    for k in range(contacts.pairs):
-        held[contacts.i[k]] = 1.0
-        held[contacts.j[k]] = 1.0
-    for k in range(contacts.bodies):
-        held[contacts.grain[k]] = 1.0
+    held[contacts.i] = 1.0
+    held[contacts.j] = 1.0
+    held[contacts.grain] = 1.0
     state, last = grains.state, past.last
     for i in range(held.shape[0]):
         x, y = last[0, i] * share, last[1, i] * share
@@ -131,19 +126,29 @@ def shorter(share, tries, force, before, strength):
 
 
 @kernel(allocates=True, forceinline=False)
-def attempt(system, origin, first, moved, rows_then, max_iterations, crossed):
+def attempt(system, origin, contacts, rows_now, first, moved, rows_then, max_iterations, crossed):
     """Predict and relax after the bodies have moved. Returns how it ended; the grains are as they were predicted."""
     grains, settings = system.grains, system.settings
     start = grains.state.copy()
     if settings.drag == 0.0:
         predict(grains, system.past, moved, first)
-    rows_now = rows_of(system.bodies)
-    pass_faces(first, start, grains.state, rows_then, rows_now, crossed)
+    image_x, image_y = first.body[IMAGE_X], first.body[IMAGE_Y]
+    pass_faces(
+        first.grain,
+        first.primitive,
+        image_x,
+        image_y,
+        start,
+        grains.state,
+        rows_then,
+        rows_now,
+        crossed,
+    )
     # Without gravity and drag it adds 0 to each force and to the energy, which changes no bit, and saves code of its own.
     weight = fire.Weight(
         settings.gravity_x, settings.gravity_y, settings.drag, grains.state[:2].copy()
     )
-    return relax(grains, rows_now, origin, weight, settings, max_iterations, crossed)
+    return relax(grains, rows_now, origin, contacts, weight, settings, max_iterations, crossed)
 
 
 @kernel(allocates=True, forceinline=False)
@@ -168,7 +173,7 @@ def increment(system, rubs):
     placed = np.empty((many, 3))
     placed[:, 0], placed[:, 1], placed[:, 2] = places[:, X], places[:, Y], places[:, TURN]
     first = touching(grains, rows_then, None)
-    deep = deep_grains(grains, first, settings.step)
+    deep = deep_grains(grains.state, first.grain, first.body[OVERLAP], settings.step)
     told, told_stopped = moved.copy(), stopped.copy()
     while True:
         crossed = np.zeros((grains.label.shape[0], rows_then.shape[0]), np.bool_)
@@ -197,7 +202,7 @@ def increment(system, rubs):
             grains.state[:] = relaxed.state
             rows = rows_of(bodies)
             contacts = touching(grains, rows, None)
-            now = deep_grains(grains, contacts, settings.step)
+            now = deep_grains(grains.state, contacts.grain, contacts.body[OVERLAP], settings.step)
             if np.any(crossed) or np.any(now & ~deep):
                 reason = SUNK
         good = not failed(reason)
@@ -228,7 +233,7 @@ def increment(system, rubs):
         if not good:
             grains.state[:] = start
             bodies.places[:] = places
-            contacts, pulls = touching(grains, rows_then, None), no_pulls(0)
+            contacts, pulls = touching(grains, rows_then, None), no_pulls()
             relaxed.unbalanced[:] = 0.0
         elif rubs is not None:
             remember(memory, relaxed)
@@ -242,7 +247,7 @@ def increment(system, rubs):
         past.last[:] = 0.0
         moved[:], stopped[:] = told, told_stopped
         past.moved[:] = moved
-        contacts, pulls = touching(grains, rows_then, None), no_pulls(0)
+        contacts, pulls = touching(grains, rows_then, None), no_pulls()
         reason = ITERATION_LIMIT if reason == BUDGET else reason
     return Increment(
         reason,
@@ -265,7 +270,9 @@ def increment(system, rubs):
 @kernel(allocates=True)
 def started(system, first, moved, rows_then, placed, most, crossed, rubs):
     """``attempt`` with friction, or without."""
+    rows_now = rows_of(system.bodies)
     if rubs is None:
-        return attempt(system, None, first, moved, rows_then, most, crossed)
+        return attempt(system, None, None, rows_now, first, moved, rows_then, most, crossed)
     origin = origin_of(system, rows_then, placed)
-    return attempt(system, origin, first, moved, rows_then, most, crossed)
+    contacts = before_lists(origin, rows_now)
+    return attempt(system, origin, contacts, rows_now, first, moved, rows_then, most, crossed)

@@ -11,6 +11,7 @@ import numpy as np
 
 from core import rigid_contacts
 from core.jit import kernel
+from core.observables import support_coefficients
 from core.squeezed import AUXETIC_AREA, RING_AREA, RING_WALL
 from sandbox.web.increment.bodies import rows_of
 from sandbox.web.increment.contacts import (
@@ -21,7 +22,6 @@ from sandbox.web.increment.contacts import (
     FORCE,
     FX,
     FY,
-    support_coefficients,
     touching,
 )
 from sandbox.web.increment.falls import drive_of, remember
@@ -63,8 +63,8 @@ def show(kept, state, contacts, rows):
     counts, room = counts_of(kept), kept.ints[SIZES.contacts]
     first, second = ints_at(kept, PART.first, room), ints_at(kept, PART.second, room)
     force, ends = floats_at(kept, PART.force, room), floats_at(kept, PART.ends, 2 * room)
-    pairs = min(contacts.pairs, room)
-    shown = min(pairs + contacts.bodies, room)
+    pairs = min(contacts.i.shape[0], room)
+    shown = min(pairs + contacts.grain.shape[0], room)
     for k in range(pairs):
         first[k] = contacts.i[k]
         second[k] = contacts.j[k]
@@ -102,11 +102,11 @@ def measure_stress(kept, state, contacts, rows):
     """``core.observables.grain_stress``: pressure, and the difference of the principal stresses [k]."""
     n = state.shape[1]
     support, stress = support_coefficients(state), np.zeros((3, n))
-    for k in range(contacts.pairs):
+    for k in range(contacts.i.shape[0]):
         dx, dy, force = contacts.pair[DX, k], contacts.pair[DY, k], contacts.pair[FORCE, k]
         press(stress, support, contacts.i[k], force, dx, dy)
         press(stress, support, contacts.j[k], force, dx, dy)
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         i, nx, ny = contacts.grain[k], contacts.body[FX, k], contacts.body[FY, k]
         if rows[contacts.primitive[k], 0] == rigid_contacts.DISC:
             # A disc's force has a tangential part; its normal runs through both centres.

@@ -93,7 +93,7 @@ def remark(kept, system, contacts):
         about_gravity(kept, system, contacts)
     elif scene == ROW_OF_GRAINS:
         about_a_row(kept, system)
-    elif scene == SINGLE and contacts.bodies:
+    elif scene == SINGLE and contacts.grain.shape[0]:
         about_single_grains(kept, system)
     if counts[COUNTS.stuck] >= LOCKED_AFTER:
         said = said_of(kept)
@@ -131,9 +131,9 @@ def about_the_hand(kept, system):
 def standing_arch(kept, system, contacts):
     """``arch`` over the orifice of the scene."""
     owner, side = system.bodies.owner, ints_at(kept, PART.side, kept.ints[SIZES.bodies])
-    where = np.zeros(contacts.bodies, np.int64)
+    where = np.zeros(contacts.grain.shape[0], np.int64)
     by_place = counts_of(kept)[COUNTS.scene] == GRAVITY  # one body has both sides
-    for k in range(contacts.bodies):
+    for k in range(contacts.grain.shape[0]):
         body = owner[contacts.primitive[k]]
         where[k] = side[body]
         if by_place:

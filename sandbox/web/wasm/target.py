@@ -16,15 +16,18 @@ from typing import Any
 
 import numba
 from llvmlite import binding
+from numba import extending
 from numba.core import cgutils as numba_cgutils
 from numba.core import codegen as numba_codegen
 from numba.core import compiler as numba_compiler
 from numba.core import runtime as numba_runtime
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
+from numba.np import arrayobj as numba_arrayobj
 
 # Numba has no types.
 cgutils: Any = numba_cgutils
+arrayobj: Any = numba_arrayobj
 codegen: Any = numba_codegen
 compiler: Any = numba_compiler
 rtsys: Any = numba_runtime.rtsys  # type: ignore[attr-defined]
@@ -124,6 +127,21 @@ def aim() -> None:
     module.keep = _nothing
     module.PIPELINES = {noalias: Pipelines(each, each) for noalias, each in pipelines.items()}
     module.kernel = _once(jit.kernel)
+    arrayobj.raise_with_shape_context = _mismatch
+
+
+def _mismatch(source: Any, place: Any) -> None:
+    """Numba's own writes the shapes into a text, which a page would carry along for nothing."""
+
+
+@extending.overload(_mismatch, strict=False)
+def _tell(source: Any, place: Any) -> Any:
+    del source, place
+    return _trap
+
+
+def _trap(source: Any, place: Any) -> None:  # noqa: ARG001
+    raise ValueError("an array does not fit where it is put")
 
 
 def _once(kernel: Any) -> Any:
