@@ -100,7 +100,10 @@ class FrictionForces:
 
     def reactions(self, owner: Indices, placement: Floats) -> Floats:
         """Force and torque on each body (B, 3) [k R, k R²]; arguments as for ``observables.reactions``."""
-        at, total = np.flatnonzero(self.j < 0), np.zeros((len(placement), 3))
+        total = np.zeros((len(placement), 3))
+        if not len(placement):
+            return total
+        at = np.flatnonzero(self.j < 0)
         forces = self.fx[at], self.fy[at], self.x[at], self.y[at]
         push_bodies(owner[self.primitive[at]], *forces, placement, total)
         return total

@@ -154,6 +154,9 @@ def touching_grains(
 
 def body_contacts(packing: Packing, primitives: Floats) -> RigidContacts:
     """All contacts of a packing with the primitives (M, 8) of rigid bodies."""
+    if not len(primitives):
+        none = np.zeros(0, dtype=np.int64)
+        return RigidContacts(none, none, *np.zeros((8, 0)))
     box = None if packing.box is None else packing.box.kernel_form()
     rows = np.ascontiguousarray(endless(primitives, packing.box), dtype=np.float64)
     grain, primitive, values = touching_bodies(packing.state, packing.contact_stiffness, rows, box)
@@ -181,8 +184,10 @@ def reactions(contacts: RigidContacts, owner: Indices, placement: Floats) -> Flo
 
     ``owner`` (M,) names the body of each primitive, ``placement`` (B, 3) where the bodies are.
     """
-    x, y = contacts.x + contacts.image_x, contacts.y + contacts.image_y
     total = np.zeros((len(placement), 3))
+    if not len(placement):
+        return total
+    x, y = contacts.x + contacts.image_x, contacts.y + contacts.image_y
     push_bodies(owner[contacts.primitive], contacts.fx, contacts.fy, x, y, placement, total)
     return total
 

@@ -183,7 +183,8 @@ class Quasistatic:
             places = self._start, self.packing.state, rows_then, rows_now
             self._through = np.zeros((len(self.packing), len(primitives)), dtype=np.bool_)
             which = touched.grain, touched.primitive, touched.image_x, touched.image_y
-            pass_faces(*which, *places, self._through)
+            if len(primitives):
+                pass_faces(*which, *places, self._through)
         solver = self.system.solver
         largest = float(self.packing.rest_radius.max()) if len(self.packing) else 1.0
         self._relaxation = Relaxation(
