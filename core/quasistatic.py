@@ -24,6 +24,7 @@ from core.friction import Friction
 from core.frictional_contacts import FrictionForces
 from core.packing import Packing, PeriodicBox
 from core.passage import deep_grains, pass_faces
+from core.prediction import carry_on
 from core.relaxation import FAILED, Relaxation, Report, StopReason
 from core.rigid import Point, RigidWorld
 from core.settings import LONGEST_STEP
@@ -387,10 +388,9 @@ class Quasistatic:
         self.packing.box = new
 
     def _predict(self) -> None:
-        """Start from the displacement of the increment before, scaled to the step: saves 4 to 10 % of the work.
+        """Start from the displacement of the increment before, as far as the bodies go on as they went.
 
-        Only as far as the bodies go on as they went, and only for grains that touch something: a grain left free by a
-        body that turned back has no reason to fly on.
+        Saves 4 to 10 % of the work.
         """
         before = sum(dx * dx + dy * dy for dx, dy in self._last_moved.values())
         now = sum(dx * dx + dy * dy for dx, dy in self._tries.moved.values())
@@ -401,15 +401,11 @@ class Quasistatic:
         )
         if along <= 0.0:
             return
-        change = self._last * min(along / before, 1.0)
         pairs, bodies = self._contacts or self.contacts()
         held = np.zeros(len(self.packing))
         for grains in (pairs.i, pairs.j, bodies.grain):
             held[grains] = 1.0
-        # A rearrangement is not going to happen twice: no grain is sent further than the bodies move.
-        distance = np.sqrt(change[0] ** 2 + change[1] ** 2)
-        change *= held * np.minimum(1.0, np.sqrt(now) / np.maximum(distance, 1e-12))
-        self.packing.state += change
+        carry_on(self.packing.state, self._last, held, min(along / before, 1.0), math.sqrt(now))
 
     def _measure(
         self, bodies: observables.RigidContacts, friction: FrictionForces | None
