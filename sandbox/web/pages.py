@@ -40,7 +40,7 @@ SPOKEN = (
 # And of the page that plays a run.
 SHARED = (
     *("view", "choices", "stage", "chains", "to_light", "to_dark", "increment", "events", "keys"),
-    *("letters", "noscript"),
+    *("letters", "noscript", "cannot_run", "silent"),
 )
 # Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
 STEPS = {"gravity_hopper": (0, 2), "intruder": (0, 1, 2), "single_grain": (0, 1, 2)}

@@ -413,6 +413,28 @@ def test_a_page_in_use_sets_undoes_and_resets(tried: dict[str, Any]) -> None:
             assert seen["shares"][1] == pytest.approx(0.75, abs=0.05), name
 
 
+def test_clumsy_hands_leave_a_page_in_order(tried: dict[str, Any]) -> None:
+    hands = tried["hands"]
+    assert not hands["byOther"]
+    assert hands["keptHold"]
+    assert hands["after"] < 5
+    for rows, drawn in hands["curves"]:
+        assert rows == drawn > 1
+    assert hands["friction"] == "0.5"
+    assert hands["focus"] == "undo"
+    assert hands["lamps"][0] == hands["lamps"][1]
+    assert min(hands["printed"]) > 100
+    assert hands["pulled"] == [True, 0]
+    assert hands["scrolled"] == [False]
+
+
+def test_a_page_that_cannot_go_on_says_so(tried: dict[str, Any]) -> None:
+    table = language.table("en")
+    assert tried["hands"]["never"] == table["player"]["cannot_run"]
+    again = table["player"]["silent"].format(reset=table["buttons"]["reset"])
+    assert tried["hands"]["silent"] == again
+
+
 @pytest.mark.parametrize(("kind", "place"), [("regular", 0), ("auxetic", 2)])
 def test_the_page_has_the_bits_of_the_desk(
     tried: dict[str, Any], tmp_path: Path, kind: str, place: int

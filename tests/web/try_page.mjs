@@ -61,9 +61,9 @@ const stand = () => look(`(pane) => ({
   ...{ ratios: [...new Set(pane.seen.grains.nu)], events: pane.shown.events.map(({ kind, text }) => [kind, text()]) },
 })`);
 
-// Take the first handle by the mouse, so far to the right and up [R], and hold it there.
-async function drag(right, up) {
-  const [x, y, k, box] = await page.evaluate(() => {
+// Where the first handle is, how many pixels a radius is long, and where the canvas ends.
+const handle = (on = page) =>
+  on.evaluate(() => {
     const pane = window.sandboxLive.panes[0];
     const { left, top, width, height } = pane.canvas.getBoundingClientRect();
     const ratio = pane.canvas.width / width;
@@ -71,6 +71,10 @@ async function drag(right, up) {
     const at = [left + (pane.camera.x + pane.camera.k * hx) / ratio, top + (pane.camera.y - pane.camera.k * hy) / ratio];
     return [...at, pane.camera.k / ratio, { right: left + width, bottom: top + height }];
   });
+
+// Take it by the mouse, so far to the right and up [R], and hold it there.
+async function drag(right, up) {
+  const [x, y, k, box] = await handle();
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(Math.min(x + right * k, box.right - 1), Math.min(y - up * k, box.bottom - 1), { steps: 8 });
@@ -202,9 +206,110 @@ const others = {};
 for (const name of readdirSync(pages).filter((name) => name.endsWith(".html")).map((name) => name.slice(0, -5))) {
   if (name !== "index") others[name] = await tried(name);
 }
+
+// -- clumsy hands, and browsers that cannot --
+
+const held = () => page.evaluate(() => window.sandboxLive.held.by !== null);
+
+async function clumsy() {
+  where = "hopper, clumsy";
+  await page.goto(address("hopper.html"));
+  await page.waitForSelector("html[data-ready]");
+  await settled();
+  const [x, y] = await handle();
+  await page.mouse.move(x, y);
+  await page.mouse.down({ button: "right" });
+  const byOther = await held();
+  await page.mouse.up({ button: "right" });
+  await drag(0, -1);
+  await page.evaluate(() => window.sandboxLive.panes[0].canvas.dispatchEvent(new PointerEvent("pointerup", { pointerId: 77 })));
+  const keptHold = await held();
+  await settled();
+  // A finger at a slider while another one pulls; nobody pulls any more when that is undone.
+  const [, , , box] = await handle();
+  await page.mouse.move(x, box.bottom - 1);
+  await page.evaluate(() => {
+    const slider = document.querySelector("#slider-friction");
+    slider.value = "0.4";
+    for (const kind of ["input", "change"]) slider.dispatchEvent(new Event(kind));
+  });
+  await page.mouse.up();
+  await settled();
+  const turned = await page.evaluate(() => window.sandboxLive.conductor.turns);
+  await page.keyboard.press("z");
+  await settled();
+  const after = await page.evaluate((before) => window.sandboxLive.conductor.turns - before, turned);
+  // Faster than increments: the curve stays that of the state.
+  await page.keyboard.press("r");
+  await settled();
+  await page.evaluate(() => {
+    for (const key of "zrz") document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  });
+  await settled();
+  const curves = await look('(pane) => [pane.count("rows"), pane.shown.stroke.length]');
+  await page.focus("#slider-friction");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("z");
+  const friction = await page.inputValue("#slider-friction");
+  await page.focus("#undo");
+  for (let k = 0; k < 20; k++) await page.keyboard.press("Enter");
+  const focus = await page.evaluate(() => document.activeElement.id);
+  const colour = () => page.$eval(".lamp", (lamp) => getComputedStyle(lamp).backgroundColor);
+  const lamps = [await colour()];
+  await page.emulateMedia({ forcedColors: "active" });
+  lamps.push(await colour());
+  await page.emulateMedia({ forcedColors: "none", media: "print" });
+  const printed = await look("(pane) => pane.canvas.clientHeight");
+  await page.emulateMedia({ media: "screen" });
+  return { byOther, keptHold, after, curves, friction, focus, lamps, printed };
+}
+
+async function without() {
+  const other = await browser.newPage();
+  await other.addInitScript(() => delete globalThis.WebAssembly);
+  await other.goto(address("hopper.html"));
+  const never = await other.textContent("#trouble:not([hidden])");
+  await other.close();
+  const failing = await browser.newPage();
+  await failing.goto(address("hopper.html"));
+  await failing.waitForSelector("html[data-ready]");
+  const begun = () => failing.waitForFunction(() => window.sandboxLive.panes.every((pane) => pane.count("rows")));
+  await begun();
+  await failing.evaluate(() => window.sandboxLive.conductor.ask(["nothing of this name"]));
+  const silent = await failing.textContent("#trouble:not([hidden])");
+  await failing.keyboard.press("r");
+  await begun();
+  await failing.waitForSelector("#trouble", { state: "hidden" });
+  await failing.close();
+  return { never, silent };
+}
+
+// How far the page scrolls, and the handle goes, under a finger on the handle and beside it.
+async function fingers() {
+  const phone = await browser.newPage({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  await phone.goto(address("hopper.html"));
+  await phone.waitForFunction(() => window.sandboxLive?.panes.every((pane) => pane.count("rows")));
+  const session = await phone.context().newCDPSession(phone);
+  const swipe = async (x, y, up) => {
+    const touch = (type, ...touchPoints) => session.send("Input.dispatchTouchEvent", { type, touchPoints });
+    await touch("touchStart", { x, y });
+    for (let k = 1; k <= 10; k++) await touch("touchMove", { x, y: y - (up * k) / 10 });
+    const found = await phone.evaluate(() => window.sandboxLive.held.by !== null);
+    await touch("touchEnd");
+    return found;
+  };
+  const [x, y, , box] = await handle(phone);
+  const pulled = [await swipe(x, y, -60), await phone.evaluate(() => scrollY)];
+  const scrolled = [await swipe(box.right - 9, box.bottom - 9, 200)];
+  await phone.waitForFunction(() => scrollY > 0);
+  await phone.close();
+  return { pulled, scrolled };
+}
+
+const hands = { ...(await clumsy()), ...(await without()), ...(await fingers()) };
 await browser.close();
 console.log(JSON.stringify({
-  ...{ ready, faults, rate, dragged, told, trust, errors, events, slow, softer, memory: again.map(({ memory }) => memory), others },
+  ...{ ready, faults, rate, dragged, told, trust, errors, events, slow, softer, memory: again.map(({ memory }) => memory), others, hands },
   ...{ first, again: again.map(hash), laid },
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));

@@ -3,13 +3,13 @@
 import { $, element, setText } from "./panes";
 import { ARROWS, pullBy } from "./hand";
 import { begin, canUndo, commandOf, keep, letGo, reset, switchScript, undo } from "./run";
-import { panes, state, the, values, view } from "./stage";
+import { held, panes, state, the, values, view } from "./stage";
 import type { Slider } from "./live";
 
 export function showButtons() {
   $("script").setAttribute("aria-pressed", String(state.script));
   $("chains").setAttribute("aria-pressed", String(state.chains));
-  $<HTMLButtonElement>("undo").disabled = !canUndo();
+  $("undo").setAttribute("aria-disabled", String(!canUndo())); // it keeps the focus
 }
 
 export function speak() {
@@ -30,7 +30,7 @@ export function speak() {
   $("plot").setAttribute("aria-label", `${say(run.labels.force)}, ${say(run.labels.stroke)}`);
   const keys = run.keys[language].flatMap(([key, does]) => [text("dt", key), text("dd", does)]);
   $("keys").replaceChildren(...keys);
-  makeSliders();
+  for (const show of lines) show();
   showButtons();
   showEvents();
   for (const pane of panes) pane.tell();
@@ -54,9 +54,11 @@ function option(said: string, value: number, chosen: number) {
 
 // -- sliders --
 
-function makeSliders() {
+const lines: (() => void)[] = []; // show what each is called and set to
+
+export function makeSliders() {
   const { share } = LIVE;
-  const lines = LIVE.sliders.map((slider) => line(slider, () => values.get(slider.name)!, (value) => set(slider, value), []));
+  for (const slider of LIVE.sliders) line(slider, () => values.get(slider.name)!, (value) => set(slider, value), []);
   if (share) {
     const slider = { ...share, value: share.at, least: 0, most: share.values.length - 1, step: 1, unit: "", top: null };
     const packed = (value: number) => {
@@ -64,9 +66,8 @@ function makeSliders() {
       begin();
       showButtons();
     };
-    lines.push(line(slider, () => state.share, packed, share.values));
+    line(slider, () => state.share, packed, share.values);
   }
-  $("sliders").replaceChildren(...lines);
 }
 
 let setting = ""; // the slider that is being moved: it is kept once what was before
@@ -83,14 +84,15 @@ function set(slider: Slider, value: number) {
 function line(slider: Omit<Slider, "command">, now: () => number, changed: (value: number) => void, named: number[]) {
   const input = element("input");
   Object.assign(input, { type: "range", id: `slider-${slider.name}`, min: slider.least, max: slider.most, step: slider.step });
-  input.value = String(now());
   const output = element("output");
+  const name = element("span");
   const show = () => {
     const value = Number(input.value);
     const top = slider.top && value >= slider.most;
     const said = top ? say(slider.top!) : `${short(named.length ? named[value] : value)} ${slider.unit}`.trim();
     output.textContent = said;
     input.setAttribute("aria-valuetext", said);
+    setText(name, say(slider.title));
   };
   input.addEventListener("input", () => {
     if (!named.length) changed(Number(input.value));
@@ -100,19 +102,22 @@ function line(slider: Omit<Slider, "command">, now: () => number, changed: (valu
     setting = "";
     if (named.length) changed(Number(input.value)); // packs anew, on letting go
   });
+  const showNow = () => {
+    input.value = String(now());
+    show();
+  };
   const restore = () => {
     if (now() === slider.value) return;
-    input.value = String(slider.value);
     changed(slider.value);
     setting = "";
-    show();
+    showNow();
   };
   input.addEventListener("dblclick", restore);
   input.addEventListener("keydown", (event) => {
     if (event.key === "Delete") restore();
   });
-  show();
-  return element("label", "slider", text("span", say(slider.title)), output, input);
+  lines.push(showNow);
+  $("sliders").append(element("label", "slider", name, output, input));
 }
 
 export function limits() {
@@ -163,8 +168,9 @@ function showKeys() {
 // What is set is shown anew, with the sliders.
 function back() {
   undo();
+  setting = "";
   limits();
-  makeSliders();
+  for (const show of lines) show();
 }
 
 const LETTERS: Record<string, () => void> = {
@@ -183,10 +189,10 @@ const KEYS: Record<string, () => void> = { F1: showKeys, Escape: letGo };
 
 export function listen() {
   document.addEventListener("keydown", (event) => {
-    const own = (event.target as HTMLElement).matches("select, input:not([type=checkbox])");
-    if (event.ctrlKey || event.metaKey || event.altKey || own) return;
-    const arrow = ARROWS[event.key];
-    const letter = $<HTMLInputElement>("letters").checked ? LETTERS[signOf(event).toLowerCase()] : undefined;
+    const on = (kinds: string) => (event.target as HTMLElement).matches(kinds);
+    if (event.ctrlKey || event.metaKey || event.altKey || on("select")) return;
+    const arrow = on("input[type=range], .told p") ? undefined : ARROWS[event.key];
+    const letter = $<HTMLInputElement>("letters").checked && !event.repeat ? LETTERS[signOf(event).toLowerCase()] : undefined;
     const act = arrow ? () => pullBy(arrow, event.shiftKey) : (KEYS[event.key] ?? letter);
     if (!act) return;
     event.preventDefault();
@@ -194,7 +200,7 @@ export function listen() {
     showButtons();
   });
   document.addEventListener("keyup", (event) => {
-    if (ARROWS[event.key]) letGo();
+    if (ARROWS[event.key] && held.by === "keys") letGo();
   });
   window.addEventListener("blur", letGo);
   const buttons = { reset, script: switchScript, undo: back, chains: LETTERS.f, theme: LETTERS.t, language: LETTERS.l };

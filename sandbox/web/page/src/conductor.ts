@@ -3,9 +3,12 @@
 import type { Live } from "./live";
 import type { Command, FromWorker, Seen, ToWorker } from "./shared";
 
+const PATIENCE = 30000; // [ms] with an increment
+
 export class Conductor {
   private workers: Worker[] = [];
   private waiting: Command[] = [];
+  private given: Command[] = []; // before the present increment
   private answers = 0;
   private dumps: ((dump: Extract<FromWorker, { kind: "dump" }>) => void)[] = [];
   busy = true;
@@ -14,24 +17,26 @@ export class Conductor {
   most = Infinity; // turns after which it waits, for tests
   spent = 0; // [ms] in kernels, all workers together
   private since = 0;
+  private broken = false;
+  private readonly address = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
 
   constructor(
     private readonly live: Live,
-    private readonly taken: (pane: number, seen: Seen) => void,
+    private readonly taken: (pane: number, commands: Command[], seen: Seen | null) => void,
     private readonly finished: () => void,
-    private readonly failed: (text: string) => void,
   ) {}
 
   // Begin with other packings.
   begin(module: WebAssembly.Module, blocks: ArrayBuffer[][], settings: Command[]) {
     for (const worker of this.workers) worker.terminate();
-    const address = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
     this.waiting = settings;
+    this.broken = false;
     this.begun();
     this.answers = blocks.length;
     this.workers = blocks.map(([ints, floats], pane) => {
-      const worker = new Worker(address);
-      worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(pane, data);
+      const worker = new Worker(this.address);
+      worker.onmessage = ({ data }: MessageEvent<FromWorker>) => worker === this.workers[pane] && this.hear(pane, data);
+      worker.onerror = () => worker === this.workers[pane] && (this.broken = true);
       this.post(worker, { kind: "load", module, layout: this.live.layout, ints, floats });
       return worker;
     });
@@ -53,13 +58,19 @@ export class Conductor {
 
   // How long the present increment has taken so far [ms].
   get waited(): number {
-    return this.busy ? performance.now() - this.since : 0;
+    return this.busy && !this.broken ? performance.now() - this.since : 0;
+  }
+
+  // Will there be no answer any more?
+  get silent(): boolean {
+    return this.broken || this.waited > PATIENCE;
   }
 
   // The next increment, once all are done with this one.
   turn() {
     if (this.busy || this.idle || this.turns >= this.most) return;
-    const message: ToWorker = { kind: "turn", commands: this.waiting.splice(0, this.atOnce()) };
+    this.given = this.waiting.splice(0, this.atOnce());
+    const message: ToWorker = { kind: "turn", commands: this.given };
     this.begun();
     this.idle = true; // unless somebody has made an increment
     this.answers = this.workers.length;
@@ -94,15 +105,14 @@ export class Conductor {
       return;
     }
     if (message.kind === "failed") {
-      this.failed(message.text);
+      console.error(message.text);
+      this.broken = true;
       return;
     }
     if (message.kind === "seen") {
       this.spent += message.time;
-      if (message.seen) {
-        this.taken(pane, message.seen);
-        this.idle = false;
-      }
+      this.taken(pane, this.given, message.seen);
+      if (message.seen) this.idle = false;
     } else {
       this.idle = false;
     }

@@ -2,19 +2,19 @@
 
 import type { Pane } from "./panes";
 import { hand, keep, letGo } from "./run";
-import { panes, state } from "./stage";
+import { held, panes, state } from "./stage";
 
 const [FAR, SMALL] = [2, 0.01]; // [R]
 
-export function grab() {
-  if (state.held) return;
+function grab(by: number | "keys") {
   keep();
-  state.held = true;
+  held.by = by;
   state.script = false;
   hand("grab");
 }
 
 function pull(x: number, y: number) {
+  if (!Number.isFinite(x + y)) return; // in a window without any room
   for (const pane of panes) {
     pane.target = [x, y];
     pane.hold();
@@ -35,22 +35,31 @@ export function follow(pane: Pane, shown: () => void) {
   canvas.addEventListener("pointerdown", (event) => {
     const [x, y] = placeOf(pane, event);
     const at = pane.shown.handles[0]?.at;
-    if (!at) return;
+    if (!at || held.by !== null || event.button) return;
     const near = 24 / ((pane.camera.k * canvas.clientWidth) / canvas.width); // so many pixels
     const { radius } = LIVE.packings[pane.index];
     const [beside, above] = [Math.max(radius, near), Math.max(LIVE.handle.axis ? 2 : radius, near)];
     if (Math.abs(x - at[0]) > beside || Math.abs(y - at[1]) > above) return;
     canvas.setPointerCapture(event.pointerId);
     offset = [at[0] - x, at[1] - y];
-    grab();
+    grab(event.pointerId);
     shown();
   });
   canvas.addEventListener("pointermove", (event) => {
-    if (!state.held || !canvas.hasPointerCapture(event.pointerId)) return;
+    if (event.pointerId !== held.by) return;
+    if (!event.buttons) return letGo(); // it was released where no page is told of it
     const [x, y] = placeOf(pane, event);
     pull(x + offset[0], y + offset[1]);
   });
-  for (const end of ["pointerup", "pointercancel"] as const) canvas.addEventListener(end, letGo);
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"] as const) {
+    canvas.addEventListener(end, (event) => {
+      if (event.pointerId === held.by) letGo();
+    });
+  }
+  // A finger scrolls the page, unless it has the handle.
+  canvas.addEventListener("touchstart", (event) => {
+    if (held.by !== null) event.preventDefault();
+  }, { passive: false });
 }
 
 export const ARROWS: Record<string, [number, number]> = { ArrowUp: [0, 1], ArrowDown: [0, -1], ArrowLeft: [-1, 0], ArrowRight: [1, 0] };
@@ -58,8 +67,8 @@ export const ARROWS: Record<string, [number, number]> = { ArrowUp: [0, 1], Arrow
 // On and on, as long as the key is down; or by a small step.
 export function pullBy([wx, wy]: [number, number], small: boolean) {
   const at = panes[0].shown.handles[0]?.at;
-  if (!at) return;
+  if (!at || typeof held.by === "number") return;
   const far = small ? SMALL : FAR;
-  grab();
+  if (held.by === null) grab("keys");
   pull(at[0] + far * wx, at[1] + far * wy);
 }

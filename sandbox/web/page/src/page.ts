@@ -1,12 +1,13 @@
 // The page of a scene: what is shown, and what a person asks for by mouse, finger and keyboard. It draws; kernels compute.
 
-import { limits, listen, showButtons, showEvents, speak } from "./choices";
+import { limits, listen, makeSliders, showButtons, showEvents, speak } from "./choices";
 import { Conductor } from "./conductor";
 import { follow } from "./hand";
 import { $, Pane, setText } from "./panes";
-import { arrange, picture, pictures, scales } from "./pictures";
+import { arrange, picture, pictures, scales, showTrouble } from "./pictures";
 import * as runs from "./run";
-import { panes, state, the } from "./stage";
+import type { Command, Seen } from "./shared";
+import { held, panes, state, the } from "./stage";
 
 const PACE = 1000 / 60; // [ms] from one increment to the next, at least
 const QUIET = 1000; // [ms] between two sentences for who hears the page
@@ -36,6 +37,11 @@ function finished() {
   }
 }
 
+function taken(pane: number, commands: Command[], seen: Seen | null) {
+  panes[pane].obey(commands);
+  if (seen) panes[pane].take(seen);
+}
+
 async function begin() {
   run = Object.assign(PAGE, {
     ...{ panes: [], languages: LIVE.languages, labels: LIVE.labels, limit: null, views: LIVE.views },
@@ -48,10 +54,10 @@ async function begin() {
   the.plot = new Plot($<HTMLCanvasElement>("plot"), () => undefined);
   the.plot.known = { low: 0, high: LIVE.axes[0], bottom: 0, top: LIVE.axes[1] };
   limits();
+  makeSliders();
   speak();
   await runs.load();
-  const failed = (text: string) => setText($("question"), text);
-  the.conductor = new Conductor(LIVE, (pane, seen) => panes[pane].take(seen), finished, failed);
+  the.conductor = new Conductor(LIVE, taken, finished);
   runs.begin();
   for (const pane of panes) follow(pane, showButtons);
   listen();
@@ -63,5 +69,9 @@ async function begin() {
 
 // For tests and for who is curious.
 const { hand, reset, undo, blocks } = runs;
-Object.assign(window, { sandboxLive: { state, panes, pictures, get conductor() { return the.conductor; }, hand, reset, undo, blocks } });
-begin();
+Object.assign(window, { sandboxLive: { state, held, panes, pictures, get conductor() { return the.conductor; }, hand, reset, undo, blocks } });
+begin().catch((error) => {
+  console.error(error);
+  document.documentElement.dataset.trouble = "";
+  showTrouble("cannot_run");
+});

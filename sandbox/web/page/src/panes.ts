@@ -3,7 +3,7 @@
 import type { Live, Packing } from "./live";
 import { told, type Told } from "./sentences";
 import { lamp } from "./trust";
-import type { Seen } from "./shared";
+import { MARKS, type Command, type Seen } from "./shared";
 
 export const $ = <Kind extends HTMLElement>(id: string) => document.getElementById(id) as Kind;
 
@@ -32,12 +32,12 @@ export class Pane {
   private readonly value = element("span", "value");
   private readonly lamp = element("span", "lamp");
   private readonly said = element("span", "said");
-  private readonly told = element("p", "clamped");
+  private readonly told = element("p");
   private readonly swatch = element("span", "swatch");
   private sentences: Told[] = [];
   private unheard: PlayerEvent[] = [];
   private lags = false;
-  back: PlayerTrack | null = null; // what the curve was at a state that is asked for
+  private marks: PlayerTrack[] = []; // what the curve was at the states that the worker keeps
   went = true; // has it gone back?
   private room = 0; // for what is said of the lamp [px]
 
@@ -73,6 +73,30 @@ export class Pane {
     return this.count("stuck") >= this.live.lockedAfter;
   }
 
+  // Before the first increment of a packing.
+  begin() {
+    Object.assign(this, { seen: null, sentences: [], unheard: [], marks: [] });
+    this.clear();
+  }
+
+  private clear() {
+    Object.assign(this.shown, { stroke: [], force: [], events: [] });
+    this.went = true;
+  }
+
+  // The curve goes the way of the worker's state, which has obeyed these commands.
+  obey(commands: Command[]) {
+    const { shown, marks } = this;
+    for (const [name] of commands) {
+      if (name === "keep") marks.push({ stroke: [...shown.stroke], force: [...shown.force], events: [...shown.events] });
+      if (marks.length > MARKS) marks.shift();
+      if (name === "reset") this.clear();
+      if (name !== "undo") continue;
+      Object.assign(shown, marks.pop());
+      this.went = true;
+    }
+  }
+
   // What an increment has come to: into the form that the player's drawing knows.
   take(seen: Seen) {
     this.seen = seen;
@@ -92,8 +116,7 @@ export class Pane {
       bodies: live.packings[this.index].bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns))),
     });
     this.sentences = told(live, seen.said);
-    if (seen.back) this.goBack();
-    else this.goOn();
+    if (!seen.back) this.goOn();
     shown.at = [shown.stroke.length - 1];
     this.hold();
   }
@@ -101,32 +124,11 @@ export class Pane {
   private goOn() {
     const { shown } = this;
     const place = { stroke: this.row("stroke"), force: this.row("resisting"), increment: this.count("rows") - 1 };
-    if (place.increment === 0) {
-      Object.assign(shown, { stroke: [], force: [], events: [] });
-      this.went = true;
-    }
     shown.stroke.push(place.stroke);
     shown.force.push(place.force);
     const begun = this.sentences.filter(({ event }) => event).map(({ event, text }) => ({ ...place, kind: event, text }));
     shown.events.push(...begun);
     this.unheard.push(...begun);
-  }
-
-  private goBack() {
-    const { shown, back } = this;
-    const rows = this.count("rows");
-    if (back) {
-      Object.assign(shown, { stroke: back.stroke.slice(0, rows), force: back.force.slice(0, rows) });
-      shown.events = back.events.filter((event) => event.increment < rows);
-    }
-    this.back = null;
-    this.went = true;
-  }
-
-  // The curve so far, to come back to: it only grows, or another one begins.
-  track(): PlayerTrack {
-    const { stroke, force, events } = this.shown;
-    return { stroke, force, events };
   }
 
   // What has begun since somebody has asked, for who does not see it.
@@ -184,6 +186,7 @@ export class Pane {
       const name = element("strong");
       name.textContent = LIVE.packings.length > 1 && notices ? `${this.title} ` : "";
       this.told.replaceChildren(name, notices);
+      this.told.tabIndex = this.told.scrollHeight > this.told.clientHeight ? 0 : -1; // to scroll it by the keyboard
     }
     this.canvas.setAttribute("aria-label", this.standing());
   }

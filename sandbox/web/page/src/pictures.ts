@@ -1,12 +1,13 @@
 // Pictures: how canvases are laid out, scales that all packings share, and what is drawn when.
 
-import { $ } from "./panes";
+import { $, setText } from "./panes";
 import { look, panes, state, the, view } from "./stage";
 
 export const pictures = { count: 0, since: performance.now() };
 const SHRINKS = 0.2; // of a scale that is much too large
 const LAG = 500; // [ms] after which an increment keeps a person waiting
 
+let scale = 1; // [pixels of the screen per px]
 export function arrange() {
   const stage = $("stage");
   const scrolls = getComputedStyle(stage).flexGrow === "0";
@@ -22,7 +23,8 @@ export function arrange() {
   stage.style.setProperty("--columns", String(columns));
   stage.dataset.columns = String(columns);
   stage.style.setProperty("--cell", scrolls ? `${Math.round(Math.max(best * tallest + 20, 100))}px` : "auto");
-  const ratio = devicePixelRatio || 1;
+  scale = devicePixelRatio;
+  const ratio = scale || 1;
   for (const canvas of [...panes.map((pane) => pane.canvas), $<HTMLCanvasElement>("plot")]) {
     const { clientWidth, clientHeight } = canvas.parentElement!;
     canvas.width = Math.max(Math.round(clientWidth * ratio), 1);
@@ -30,8 +32,8 @@ export function arrange() {
   }
   for (const pane of panes) pane.measure();
   const fitted = panes.map(({ canvas, shown }) => cameraFor(shown.bounds, canvas.width, canvas.height, 10 * ratio));
-  const scale = Math.min(...fitted.map((camera) => camera.k)); // one scale for all
-  for (const { canvas, shown, camera } of panes) Object.assign(camera, cameraFor(shown.bounds, canvas.width, canvas.height, 0, scale));
+  const k = Math.min(...fitted.map((camera) => camera.k)); // one scale for all
+  for (const { canvas, shown, camera } of panes) Object.assign(camera, cameraFor(shown.bounds, canvas.width, canvas.height, 0, k));
   the.dirty = true;
 }
 
@@ -74,10 +76,19 @@ function showLegend() {
   $("legend").replaceChildren(...legendOf(run.panes, view(), state.theme, state.chains));
 }
 
+// Why nothing moves.
+export function showTrouble(name: string) {
+  const part = $("trouble");
+  part.hidden = !name;
+  setText(part, name && word(name, { reset: word("reset") }));
+}
+
 export function picture() {
   requestAnimationFrame(picture);
   pictures.count++;
   the.conductor.turn();
+  showTrouble(the.conductor.silent ? "silent" : "");
+  if (scale !== devicePixelRatio) arrange(); // on another screen
   const lags = the.conductor.waited > LAG;
   for (const pane of panes) pane.lag(lags);
   if (!the.dirty && panes.every((pane) => !pane.fresh)) return;

@@ -1,11 +1,12 @@
 // The run: packings to begin with, what is set, where one can go back to, the script.
 
+import { $, setText } from "./panes";
 import { MARKS, type Command } from "./shared";
-import { panes, state, the, values } from "./stage";
+import { held, panes, state, the, values } from "./stage";
 
 let program: WebAssembly.Module;
 let packings: BigUint64Array[][][]; // by seed and packing: whole numbers, and others
-const marks: { values: [string, number][]; script: boolean; tracks: PlayerTrack[] }[] = [];
+const marks: { values: [string, number][]; script: boolean; held: boolean }[] = [];
 
 export async function load() {
   const [kernels, all] = await Promise.all([unpacked("kernels"), unpacked("packings")]);
@@ -60,8 +61,8 @@ export function hand(kind: string, x = 0, y = 0) {
 }
 
 export function letGo() {
-  if (!state.held) return;
-  state.held = false;
+  if (held.by === null) return;
+  held.by = null;
   for (const pane of panes) {
     pane.target = null;
     pane.hold();
@@ -71,7 +72,7 @@ export function letGo() {
 
 // A place to come back to, for hand, script and settings alike.
 export function keep() {
-  marks.push({ values: [...values], script: state.script, tracks: panes.map((pane) => pane.track()) });
+  marks.push({ values: [...values], script: state.script, held: held.by !== null });
   if (marks.length > MARKS) marks.shift();
   the.conductor.ask(["keep"]);
 }
@@ -84,11 +85,12 @@ export function undo() {
   if (!mark) return;
   for (const [name, value] of mark.values) values.set(name, value);
   state.script = mark.script;
-  panes.forEach((pane, k) => (pane.back = mark.tracks[k]));
   the.conductor.ask(["undo"]);
+  if (mark.held) hand("release"); // nobody holds the handle now
 }
 
 export function reset() {
+  if (the.conductor.silent) return begin();
   letGo();
   keep();
   state.script = false;
@@ -100,7 +102,8 @@ export function begin() {
   letGo();
   marks.length = 0;
   state.script = false;
-  for (const pane of panes) pane.seen = null;
+  for (const pane of panes) pane.begin();
+  setText($("live"), "");
   the.conductor.begin(program, blocks(), changed());
 }
 
