@@ -418,6 +418,8 @@ def test_clumsy_hands_leave_a_page_in_order(tried: dict[str, Any]) -> None:
     assert not hands["byOther"]
     assert hands["keptHold"]
     assert hands["after"] < 5
+    assert hands["aloud"].startswith("regular: ")
+    assert "an event" not in hands["aloud"]
     for rows, drawn in hands["curves"]:
         assert rows == drawn > 1
     assert hands["friction"] == "0.5"

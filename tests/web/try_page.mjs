@@ -239,9 +239,16 @@ async function clumsy() {
   await page.keyboard.press("z");
   await settled();
   const after = await page.evaluate((before) => window.sandboxLive.conductor.turns - before, turned);
-  // Faster than increments: the curve stays that of the state.
-  await page.keyboard.press("r");
+  // Told how things stand, though an event has just been told.
+  await page.evaluate(() => {
+    window.sandboxLive.panes[0].unheard.push({ text: () => "an event" });
+    window.sandboxLive.reset();
+  });
+  await page.waitForFunction(() => document.querySelector("#live").textContent.includes("an event"));
   await settled();
+  await page.waitForTimeout(1500);
+  const aloud = await page.textContent("#live");
+  // Faster than increments: the curve stays that of the state.
   await page.evaluate(() => {
     for (const key of "zrz") document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
   });
@@ -261,7 +268,7 @@ async function clumsy() {
   await page.emulateMedia({ forcedColors: "none", media: "print" });
   const printed = await look("(pane) => pane.canvas.clientHeight");
   await page.emulateMedia({ media: "screen" });
-  return { byOther, keptHold, after, curves, friction, focus, lamps, printed };
+  return { byOther, keptHold, after, aloud, curves, friction, focus, lamps, printed };
 }
 
 async function without() {

@@ -14,6 +14,19 @@ const QUIET = 1000; // [ms] between two sentences for who hears the page
 
 let said = 0;
 let begun = 0;
+let later = 0;
+
+function sayAloud(sentences: string[]) {
+  said = performance.now();
+  setText($("live"), sentences.join(". "));
+}
+
+// How things stand, as soon as what was said last has been heard.
+function standing() {
+  if (the.conductor.busy) return; // with something newer
+  for (const pane of panes) pane.tell();
+  sayAloud(panes.map((pane) => pane.standing()));
+}
 
 // Increments do not wait for pictures: where a computer draws slowly, some are not seen.
 function finished() {
@@ -30,11 +43,9 @@ function finished() {
   const news = panes.flatMap((pane) => pane.news());
   if (news.length || panes.some((pane) => pane.went)) showEvents();
   for (const pane of panes) pane.went = false;
-  const now = performance.now();
-  if (news.length || (the.conductor.idle && now - said > QUIET)) {
-    said = now;
-    setText($("live"), (news.length ? news : panes.map((pane) => pane.standing())).join(". "));
-  }
+  clearTimeout(later);
+  if (news.length) sayAloud(news);
+  else if (the.conductor.idle) later = setTimeout(standing, Math.max(said + QUIET - performance.now(), 0));
 }
 
 function taken(pane: number, commands: Command[], seen: Seen | null) {
