@@ -22,6 +22,7 @@ SCENES: dict[str, Mapping[str, Value]] = {
     "intruder": {"grains": 250, "intruder_radius": 4.0},
     "grain_row": {},
     "single_grain": {},
+    "couette": {"grains": 160},
 }
 ORDER = ("regular", "mixed", "auxetic")
 SEEDS = (1, 2, 3)
@@ -36,6 +37,12 @@ def scene_named(name: str) -> str:
     if registry.get(name).name not in SCENES:
         raise InputError(f"there is no page of {name}: choose {', '.join(SCENES)}")
     return name
+
+
+def is_periodic(name: str) -> bool:
+    """True if the cell of the scene goes round on its page."""
+    scene = registry.get(name)
+    return scene.ingredients(scene.settings(dict(SCENES[name]))).periodic
 
 
 def build(name: str, seeds: Sequence[int], tell: Tell = lambda _text, _share: None) -> Built:
@@ -59,12 +66,13 @@ def write(folder: Path, names: Sequence[str], tell: Tell, *, single: bool = Fals
     Raises InputError where one cannot be.
     """
     tell("compiling the kernels", 0.0)
-    program, bundled = kernels(), scripts()
+    programs = {periodic: kernels(periodic=periodic) for periodic in set(map(is_periodic, names))}
+    bundled = scripts()
     shown = language.present()
     written = []
     for name in names:
         built = build(name, SEEDS[:1] if name in ALIKE else SEEDS[:2] if single else SEEDS, tell)
-        text = page(built, program, bundled, "" if single else way_back(shown))
+        text = page(built, programs[is_periodic(name)], bundled, "" if single else way_back(shown))
         written.append(_write(folder / f"{name}.html", text))
     if not single:
         written.append(_write(folder / FILE, menu(names)))

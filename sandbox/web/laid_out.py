@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core.arrays import Floats
 from core.errors import InputError
 from core.friction import Friction
-from core.packing import Packing
+from core.packing import Packing, PeriodicBox
 from core.rigid import SAME_POINT, RigidBody
 from core.rigid_contacts import EDGE, VERTEX
 from sandbox.web.increment import curve, remarks
@@ -29,6 +29,7 @@ CURVES = {
     "grain_row": curve.ROW_OF_GRAINS,
     "biaxial_press": curve.PRESS,
     "gravity_hopper": curve.GRAINS_OUT,
+    "couette": curve.SHEAR,
 }
 REMARKS = {
     "hopper": remarks.HOPPER,
@@ -36,6 +37,7 @@ REMARKS = {
     "intruder": remarks.DISC,
     "grain_row": remarks.ROW_OF_GRAINS,
     "single_grain": remarks.SINGLE,
+    "couette": remarks.SHEAR,
 }
 SIDES = {"left wall": -1, "right wall": 1}  # of an orifice
 REPEATED = {"gravity_hopper": REST + TREMBLE}  # a script that begins again after so many increments
@@ -53,7 +55,8 @@ def part(blocks: Blocks, name: str, length: int) -> NDArray[Any]:
 def laid_out(scene: Scene, setup: Setup, settings: Values, kind: str) -> Blocks:
     """A run of what was built from grains of that kind, before its first increment.
 
-    Raises InputError for what a page cannot run: a periodic box, bodies that turn, and any but discs that are dragged anywhere.
+    Raises InputError for what a page cannot run: a cell that is periodic upwards or has walls, bodies that turn, and any but
+    discs that are dragged anywhere.
     """
     _check(scene, setup)
     packing, world = setup.packing, setup.world
@@ -85,6 +88,8 @@ def laid_out(scene: Scene, setup: Setup, settings: Values, kind: str) -> Blocks:
     put("places", _places(setup))
     put("local", _local(rows, owner, world.placement()))
     put("owner", owner)
+    if packing.box is not None:
+        put("cell", packing.box.kernel_form())
     put("joints", _joints(rows))
     put("script", script)
     put("corners", corners)
@@ -123,8 +128,12 @@ def _check(scene: Scene, setup: Setup) -> None:
         raise InputError(f"a page cannot plot the curve of {scene.name}")
     other = [body for body in setup.world.bodies if body.held and not _radius(body)]
     turned = [body for body in setup.world.bodies if body.movable and body.angle != 0.0]
-    if setup.packing.box is not None or other or (setup.drag > 0.0 and setup.gravity is None):
-        raise InputError("a page runs scenes in an open box, with bodies that slide and discs")
+    box = setup.packing.box
+    walls = any(body.segments or body.polygons for body in setup.world.bodies)
+    if box is not None and (walls or math.isfinite(box.height)):
+        raise InputError("a page runs scenes whose cell is open, or goes round from left to right")
+    if other or (setup.drag > 0.0 and setup.gravity is None):
+        raise InputError("a page runs scenes with bodies that slide, and discs")
     if turned or setup.follow is not None or not setup.relaxes or setup.box_target is not None:
         raise InputError(
             "a page runs scenes whose bodies move straight, and all of whose grains relax"
@@ -184,12 +193,14 @@ def packing_in(blocks: Blocks) -> Packing:
     """The grains as they are now."""
     n = int(blocks[0][SIZES.grains])
     x, y, *_ = part(blocks, "state", 5 * n).reshape(5, n)
+    width = float(part(blocks, "cell", 1)[0])
     packing = Packing(
         x,
         y,
         part(blocks, "rest_radius", n).copy(),
         part(blocks, "poisson_ratio", n).copy(),
         part(blocks, "contact_stiffness", n).copy(),
+        box=PeriodicBox(width) if width > 0.0 else None,
     )
     packing.state[:] = part(blocks, "state", 5 * n).reshape(5, n)
     packing.label = part(blocks, "label", n).copy()

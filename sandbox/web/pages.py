@@ -280,6 +280,7 @@ def _packing(name: str, setup: Setup) -> dict[str, Any]:
         "title": in_each(lambda: words.PACKINGS.get(name, name)),
         "dash": packing_dash(name),
         "bounds": setup.bounds,
+        "width": None if setup.packing.box is None else setup.packing.box.width,
         "radius": setup.handles[0].radius,
         "bodies": [
             {

@@ -58,6 +58,9 @@ ALL = (
     Sentence("grain_ratio", _RATIO, {"strains": "grain_strains", "kind": "regular"}),
     Sentence("grain_strains", _STRAINS, {"kind": "auxetic"}),
     Sentence("grain_ratio", _RATIO, {"strains": "grain_strains", "kind": "auxetic"}),
+    Sentence("plate_stresses", ("normal", "ratio")),
+    Sentence("no_hold"),
+    Sentence("avalanche_stress", ("fall",)),
 )
 
 
@@ -67,7 +70,8 @@ _OF_SCENES = {
     remarks.GRAVITY: range(remarks.EMPTY, remarks.LOCKED_BY_ARCH),
     remarks.DISC: (remarks.FORCE_FELL,),
     remarks.ROW_OF_GRAINS: (remarks.SIDEWAYS, remarks.SIDEWAYS_AND_ROOM),
-    remarks.SINGLE: range(remarks.STRAINS, len(ALL)),
+    remarks.SINGLE: range(remarks.STRAINS, remarks.STRESSES),
+    remarks.SHEAR: range(remarks.STRESSES, len(ALL)),
 }
 
 

@@ -25,21 +25,23 @@ ROOT = HERE.parents[1]
 SCRIPTS = ("page.ts", "worker.ts")
 
 
-def kernels() -> bytes:
-    """All that a page calls, as WebAssembly: the same kernels as on the desk, without fast math.
+def kernels(*, periodic: bool = False) -> bytes:
+    """All that a page calls, as WebAssembly: the same kernels as on the desk, without fast math; for open or ``periodic`` cells.
 
     Raises InputError where the compiler is not installed, or fails.
     """
     require("pages need", "ziglang", "the linker of Zig", "web")
     sources = source_hash(CORE, ROOT / "scenes", HERE / "increment", HERE / "wasm")
     runtime = hashlib.sha256((HERE / "wasm" / "runtime.c").read_bytes()).hexdigest()[:8]
-    return _kept(f"kernels-{sources}-{runtime}.wasm", _compile).read_bytes()
+    kind = ("periodic",) if periodic else ()
+    name = "-".join(("kernels", *kind, sources, runtime))
+    return _kept(f"{name}.wasm", lambda out: _compile(out, *kind)).read_bytes()
 
 
-def _compile(out: Path) -> None:
+def _compile(out: Path, *kind: str) -> None:
     paths = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
     _run(
-        [sys.executable, "-m", "sandbox.web.wasm", str(out)],
+        [sys.executable, "-m", "sandbox.web.wasm", str(out), *kind],
         ROOT,
         "the kernels cannot be compiled",
         PYTHONPATH=paths,

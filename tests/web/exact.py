@@ -27,9 +27,12 @@ CHANGED = {
     "biaxial_press": {"auxetic_poisson_ratio": -0.4},
     "grain_row": {"hand_strength": 3.0},
     "single_grain": {"poisson_ratio": 0.3},
+    "couette": {"friction": 0.3},
 }
 # Where the script begins in a scene: one that shakes now and then is about to.
 BEGUN = {"gravity_hopper": 238}
+# How far from where the hand wants a body it says that it does [R]: what goes round comes to the nearest image.
+AROUND = {"couette": -60.0}
 
 
 def without_fast_math() -> None:
@@ -37,6 +40,15 @@ def without_fast_math() -> None:
     target = kernel_cache.target
     kernel_cache.target = lambda: f"{target()} without fast math"
     jit.FAST_MATH = set()
+
+
+def for_periodic_cells() -> None:
+    """Before kernels of pages are imported, which are made for the one or the other."""
+    target = kernel_cache.target
+    kernel_cache.target = lambda: f"{target()} periodic"
+    from sandbox.web.increment import cell
+
+    cell.PERIODIC = True
 
 
 def commands(steps: int) -> dict[int, tuple[str, float]]:
@@ -120,6 +132,15 @@ def said_by(run: Any) -> str:
 
 def main() -> None:
     without_fast_math()
+    from scenes import registry
+
+    out, name, kind, seed, steps, *given = sys.argv[1:]
+    named = dict(pair.split("=", 1) for pair in given)
+    begun = named.pop("from", None)  # fast math packs grains otherwise in the last bits
+    scene = registry.get(name)
+    settings = scene.settings(named)
+    if scene.ingredients(settings).periodic:
+        for_periodic_cells()
     by_the_rule_of_the_page()
     from sandbox.session.run import Run
     from sandbox.web.increment import course
@@ -127,13 +148,7 @@ def main() -> None:
     from sandbox.web.increment.observe import observe
     from sandbox.web.laid_out import laid_out, packing_in, part, state_hash
     from sandbox.web.sentences import told
-    from scenes import registry
 
-    out, name, kind, seed, steps, *given = sys.argv[1:]
-    scene = registry.get(name)
-    named = dict(pair.split("=", 1) for pair in given)
-    begun = named.pop("from", None)  # fast math packs grains otherwise in the last bits
-    settings = scene.settings(named)
     setup = scene.build(settings, kind, int(seed))
     if begun is not None:
         with np.load(begun) as numbers:
@@ -173,7 +188,8 @@ def main() -> None:
         elif what == "move":
             x, y = setup.world[body].position
             run.hands.grab(body)
-            x, y = x + where * abs(direction[0]), y + where * abs(direction[1])
+            x += where * abs(direction[0]) + AROUND.get(name, 0.0)
+            y += where * abs(direction[1])
             run.hands.move(body, (x, y))
             course.command(kept, course.GRAB, driven, 0.0, 0.0)
             course.command(kept, course.MOVE, driven, x, y)

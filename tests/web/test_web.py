@@ -35,7 +35,7 @@ from sandbox.web.pages import SLIDES, STEPS, sliders
 from sandbox.web.sentences import ALL, said_in, told
 from sandbox.words import language, words
 from scenes import registry
-from tests.web.exact import BEGUN, CHANGED, commands, entries
+from tests.web.exact import AROUND, BEGUN, CHANGED, commands, entries
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
@@ -58,6 +58,7 @@ RUNS = {
     ("biaxial_press", "mixed"): 64,
     ("grain_row", "mixed"): 64,
     ("single_grain", "mixed"): 64,
+    ("couette", "mixed"): 64,
 }
 Run = tuple[str, str]
 pytestmark = pytest.mark.slow
@@ -83,17 +84,28 @@ def exact(tmp_path_factory: pytest.TempPathFactory) -> dict[Run, dict[str, Any]]
     return {run: run_exactly(run, tmp_path_factory.mktemp("exact")) for run in RUNS}
 
 
-@pytest.fixture(scope="session")
-def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def compiled(folder: Path, *, periodic: bool = False) -> Path:
     """The kernels as WebAssembly."""
     lacking = missing("ziglang", "wasmtime")
     if lacking:
         pytest.skip(f"without {' and '.join(lacking)}: install the extra web")
     from sandbox.web.toolchain import kernels
 
-    path = tmp_path_factory.mktemp("kernels") / "kernels.wasm"
-    path.write_bytes(kernels())
+    path = folder / "kernels.wasm"
+    path.write_bytes(kernels(periodic=periodic))
     return path
+
+
+@pytest.fixture(scope="session")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Those for open cells."""
+    return compiled(tmp_path_factory.mktemp("kernels"))
+
+
+@pytest.fixture(scope="session")
+def periodic_program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """And for periodic ones."""
+    return compiled(tmp_path_factory.mktemp("periodic"), periodic=True)
 
 
 def first_differing(these: Any, those: Any) -> int:
@@ -141,10 +153,11 @@ def test_the_runs_have_much_to_say(exact: dict[Run, Any]) -> None:
     assert "end of travel" in said["gravity_hopper", "mixed"]
     assert "sideways: " in said["grain_row", "mixed"]
     assert "Poisson's ratio" in said["single_grain", "mixed"]
+    assert "shear stress over pressure" in said["couette", "mixed"]
 
 
 def test_every_sentence_has_its_words_and_its_scene() -> None:
-    assert len(ALL) == remarks.AUXETIC_STRAINS_AND_RATIO + 1
+    assert len(ALL) == remarks.STRESS_FELL + 1
     for code in language.available():
         with language.speaking(code):
             for sentence in ALL:
@@ -182,10 +195,11 @@ def test_every_slider_that_acts_where_grains_stand_is_tried() -> None:
 
 @pytest.mark.parametrize("run", RUNS)
 def test_webassembly_gives_the_bits_of_the_desk(
-    exact: dict[Run, Any], program: Path, run: Run
+    exact: dict[Run, Any], program: Path, periodic_program: Path, run: Run
 ) -> None:
     said = exact[run]
-    assert first_differing(said["session"], replayed(program, said, run[0])) == -1
+    kernels = periodic_program if building.is_periodic(run[0]) else program
+    assert first_differing(said["session"], replayed(kernels, said, run[0])) == -1
 
 
 def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
@@ -196,10 +210,12 @@ def started(program: Path, said: dict[str, Any]) -> tuple[Host, int]:
     return host, int(part(first, "counts", len(COUNTS))[COUNTS.driven])
 
 
-def moved_by(host: Host, body: int, way: float, direction: tuple[float, float]) -> None:
-    """A hand takes the body and wants it so far along its drive, up or to the right [R]."""
+def moved_by(
+    host: Host, body: int, way: float, direction: tuple[float, float], around: float = 0.0
+) -> None:
+    """A hand takes the body and wants it so far along its drive, up or to the right [R], as an image so far ``around`` says."""
     x, y = part(host.blocks(), "places", PLACES * (body + 1))[PLACES * body :][:2]
-    x, y = float(x) + way * abs(direction[0]), float(y) + way * abs(direction[1])
+    x, y = float(x) + way * abs(direction[0]) + around, float(y) + way * abs(direction[1])
     host.call("command", course.GRAB, body, 0.0, 0.0)
     host.call("command", course.MOVE, body, x, y)
 
@@ -223,7 +239,7 @@ def replayed(program: Path, said: dict[str, Any], name: str) -> list[str]:
             part(blocks, "counts", len(COUNTS))[COUNTS.script] = BEGUN.get(name, 0)
             host.write(blocks)
         elif what == "move":
-            moved_by(host, driven, where, direction_of(said))
+            moved_by(host, driven, where, direction_of(said), AROUND.get(name, 0.0))
         elif what == "set":
             settings = registry.get(name).settings(dict(building.SCENES[name]))
             for entry, values in entries(name, settings):
@@ -252,10 +268,10 @@ def test_what_a_page_cannot_run_is_refused() -> None:
     scene = registry.get("biaxial_periodic")
     settings = scene.settings({"grains": 100})
     setup = scene.build(settings, "mixed", 1)
-    with pytest.raises(InputError, match="a page runs scenes in an open box"):
+    with pytest.raises(InputError, match="a page runs scenes whose cell is open"):
         laid_out(scene, replace(setup, curve=None), settings, "mixed")
-    with pytest.raises(InputError, match="there is no page of couette: choose hopper, "):
-        building.scene_named("couette")
+    with pytest.raises(InputError, match="there is no page of avalanches: choose hopper, "):
+        building.scene_named("avalanches")
 
 
 def test_a_disc_that_is_dragged_stays_out_of_walls_and_slides_along_them() -> None:

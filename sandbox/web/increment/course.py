@@ -9,6 +9,7 @@ import numpy as np
 
 from core.jit import kernel
 from sandbox.web.increment.bodies import FORCE_LIMIT, NOTHING, hypotenuse, way_to
+from sandbox.web.increment.cell import CELL, box_of, nearest_image
 from sandbox.web.increment.curve import plotted
 from sandbox.web.increment.increment import failed, increment
 from sandbox.web.increment.memory import (
@@ -32,6 +33,7 @@ from sandbox.web.increment.systems import (
     AXIS_Y,
     HOME_X,
     HOME_Y,
+    PLACES,
     RADIUS,
     TO_X,
     TO_Y,
@@ -50,13 +52,15 @@ GRAB, MOVE, RELEASE, SCRIPT_ON, SCRIPT_OFF = range(5)
 
 @kernel(allocates=True)
 def command(kept, kind, body, x, y):
-    """What a hand does, or who starts the script."""
+    """What a hand does, or who starts the script. What goes round is moved to that image of a place which is nearest."""
     counts, bodies = counts_of(kept), kept.ints[SIZES.bodies]
     targets = floats_at(kept, PART.targets, 3 * bodies)
     blocked = ints_at(kept, PART.blocked, bodies)
     if kind == MOVE:
         targets[3 * body + ASKED] = 1.0
-        targets[3 * body + TO_X] = x
+        here = floats_at(kept, PART.places, PLACES * bodies)[PLACES * body + X]
+        box = box_of(floats_at(kept, PART.cell, CELL))
+        targets[3 * body + TO_X] = nearest_image(box, here, x)
         targets[3 * body + TO_Y] = y
         blocked[body] = 0
     elif kind == RELEASE:
@@ -243,6 +247,7 @@ def advance(kept):
         resisting,
         system.past.reactions,
         row[ROW.side],
+        place[HOME_Y],
         counts[COUNTS.rows],
         counts[COUNTS.out] + left,
     )

@@ -1,4 +1,4 @@
-"""One load increment from beginning to end: ``core.quasistatic.Quasistatic`` as one kernel, in an open box.
+"""One load increment from beginning to end: ``core.quasistatic.Quasistatic`` as one kernel, in a cell that stays as it is.
 
 Bodies slide by at most a step; the grains are predicted, relaxed and observed; a hand that has overpowered itself goes back and
 tries a shorter way; what has failed is taken back. A scene without friction has coefficient 0, and runs code that knows of none.
@@ -67,7 +67,7 @@ def origin_of(system, rows, before):
     return Origin(
         system.settings.coefficient,
         system.grains.state.copy(),
-        None,
+        system.box,
         rows,
         turn,
         system.grains.label,
@@ -148,7 +148,9 @@ def attempt(system, origin, contacts, rows_now, first, moved, rows_then, max_ite
     weight = fire.Weight(
         settings.gravity_x, settings.gravity_y, settings.drag, grains.state[:2].copy()
     )
-    return relax(grains, rows_now, origin, contacts, weight, settings, max_iterations, crossed)
+    return relax(
+        grains, system.box, rows_now, origin, contacts, weight, settings, max_iterations, crossed
+    )
 
 
 @kernel(allocates=True, forceinline=False)
@@ -159,7 +161,7 @@ def increment(system, rubs):
     ``system`` is then as it is after the increment.
     """
     grains, bodies, settings = system.grains, system.bodies, system.settings
-    memory, past, wanted = system.memory, system.past, system.wanted
+    memory, past, wanted, box = system.memory, system.past, system.wanted, system.box
     many = bodies.places.shape[0]
     moved, pulled = np.zeros((many, 2)), np.zeros((many, 2))
     stopped = np.zeros(many, np.int64)
@@ -172,7 +174,7 @@ def increment(system, rubs):
     places = bodies.places.copy()
     placed = np.empty((many, 3))
     placed[:, 0], placed[:, 1], placed[:, 2] = places[:, X], places[:, Y], places[:, TURN]
-    first = touching(grains, rows_then, None)
+    first = touching(grains, rows_then, box)
     deep = deep_grains(grains.state, first.grain, first.body[OVERLAP], settings.step)
     told, told_stopped = moved.copy(), stopped.copy()
     while True:
@@ -201,7 +203,7 @@ def increment(system, rubs):
         if not failed(reason):
             grains.state[:] = relaxed.state
             rows = rows_of(bodies)
-            contacts = touching(grains, rows, None)
+            contacts = touching(grains, rows, box)
             now = deep_grains(grains.state, contacts.grain, contacts.body[OVERLAP], settings.step)
             if np.any(crossed) or np.any(now & ~deep):
                 reason = SUNK
@@ -233,7 +235,7 @@ def increment(system, rubs):
         if not good:
             grains.state[:] = start
             bodies.places[:] = places
-            contacts, pulls = touching(grains, rows_then, None), no_pulls()
+            contacts, pulls = touching(grains, rows_then, box), no_pulls()
             relaxed.unbalanced[:] = 0.0
         elif rubs is not None:
             remember(memory, relaxed)
@@ -247,7 +249,7 @@ def increment(system, rubs):
         past.last[:] = 0.0
         moved[:], stopped[:] = told, told_stopped
         past.moved[:] = moved
-        contacts, pulls = touching(grains, rows_then, None), no_pulls()
+        contacts, pulls = touching(grains, rows_then, box), no_pulls()
         reason = ITERATION_LIMIT if reason == BUDGET else reason
     return Increment(
         reason,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from core.arrays import Floats
 from core.jit import kernel
+from sandbox.web.increment.cell import CELL, box_of
 from sandbox.web.increment.systems import (
     PLACES,
     Bodies,
@@ -156,6 +157,7 @@ class Parts(NamedTuple):
     drive: int
     accuracy: int  # (2, 3) bounds of ``scenes.accuracy``: one time in two, and nine of ten
     force_before: int  # (contacts,) between grains, in the increment before [k R]
+    cell: int  # (CELL,) see ``cell`` [R]; 0 where it is open
     label: int  # of ints, from here
     keys: int
     known: int
@@ -209,6 +211,7 @@ def lengths(sizes: Sizes) -> dict[str, int]:
         "drive": len(DRIVE),
         "accuracy": 6,
         "force_before": sizes.contacts,
+        "cell": CELL,
         "label": n,
         "keys": sizes.room,
         "known": 1,
@@ -330,4 +333,5 @@ def system_in(kept):
             floats_at(kept, PART.reactions, 3 * b).reshape(b, 3),
         ),
         floats_at(kept, PART.wanted, 3 * b).reshape(b, 3),
+        box_of(floats_at(kept, PART.cell, CELL)),
     )

@@ -48,7 +48,7 @@ def observe(kept):
     """All of it."""
     system = system_in(kept)
     rows = rows_of(system.bodies)
-    contacts = touching(system.grains, rows, None)
+    contacts = touching(system.grains, rows, system.box)
     show(kept, system.grains.state, contacts, rows)
     measure_stress(kept, system.grains.state, contacts, rows)
     measure_grains(kept, system)

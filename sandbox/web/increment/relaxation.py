@@ -80,12 +80,11 @@ def held_at_the_end(m, contacts, box):
 
 
 @kernel(allocates=True, forceinline=False)
-def relax(grains, primitives, origin, contacts, weight, settings, max_iterations, crossed):
-    """Relax grains among bodies at rest, in an open box; ``origin`` and ``contacts`` are None where there is no friction.
+def relax(grains, box, primitives, origin, contacts, weight, settings, max_iterations, crossed):
+    """Relax grains among bodies at rest. ``box`` is None where the cell is open, ``origin`` and ``contacts`` where nothing rubs.
 
     ``grains`` stay as they are. ``crossed`` (N, M): which grains have gone through which edges, turned over for each time.
     """
-    box = None
     count, spins = grains.label.shape[0], origin is not None
     radius, ratio, stiffness = grains.rest_radius, grains.poisson_ratio, grains.contact_stiffness
     floor = settings.force_floor * (radius.max() if count else 1.0)

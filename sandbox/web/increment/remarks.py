@@ -38,7 +38,7 @@ from scenes.hopper import DIAMETER
 from scenes.single_grain import NOISE
 
 # Scenes that have something to say.
-NOBODY, HOPPER, GRAVITY, DISC, ROW_OF_GRAINS, SINGLE = range(6)
+NOBODY, HOPPER, GRAVITY, DISC, ROW_OF_GRAINS, SINGLE, SHEAR = range(7)
 # Kinds of events, as ``scenes.scene.Happening``.
 LOCKED, CLOG, ARCH, AVALANCHE = range(KINDS)
 NO_EVENT = -1
@@ -48,6 +48,7 @@ FORCE_FELL, ARCH_HOLDS, CLOGGED, CLOGGED_BY_ARCH, EMPTY, FLOWING, FLOWS_AGAIN = 
 AT_REST, NEVER_STARTED, CLOGGED_AT_REST, LOCKED_BY_ARCH, LOCKED_BY, LOCKED_BY_ALL = range(13, 19)
 SIDEWAYS, SIDEWAYS_AND_ROOM = 19, 20
 STRAINS, STRAINS_AND_RATIO, AUXETIC_STRAINS, AUXETIC_STRAINS_AND_RATIO = range(21, 25)
+STRESSES, NO_HOLD, STRESS_FELL = range(25, 28)
 FLOOR = 0  # of a row of grains
 
 
@@ -93,6 +94,8 @@ def remark(kept, system, contacts):
         about_gravity(kept, system, contacts)
     elif scene == ROW_OF_GRAINS:
         about_a_row(kept, system)
+    elif scene == SHEAR:
+        about_a_shear(kept, system, contacts)
     elif scene == SINGLE and contacts.grain.shape[0]:
         about_single_grains(kept, system)
     if counts[COUNTS.stuck] >= LOCKED_AFTER:
@@ -209,6 +212,22 @@ def about_a_row(kept, system):
     room = row_of(kept)[ROW.side] - 2.0 * wide
     sentence = SIDEWAYS_AND_ROOM if room > 1e-6 else SIDEWAYS
     say(kept, sentence, NO_EVENT, share, room, 0.0, 0.0)
+
+
+@kernel(allocates=True)
+def about_a_shear(kept, system, contacts):
+    """``scenes.couette.Couette.remarks``."""
+    push = system.past.reactions[counts_of(kept)[COUNTS.driven]]
+    wide = row_of(kept)[ROW.side]
+    shear, normal = -push[0] / wide + 0.0, push[1] / wide + 0.0
+    if normal <= 0.0:
+        say(kept, NO_HOLD, NO_EVENT, 0.0, 0.0, 0.0, 0.0)
+        return
+    say(kept, STRESSES, NO_EVENT, normal, shear / normal, 0.0, 0.0)
+    fall = sudden_fall(kept, system)
+    if fall > 0.0:
+        say(kept, STRESS_FELL, AVALANCHE, fall, 0.0, 0.0, 0.0)
+        point(kept, who_took_part(kept, system, contacts))
 
 
 @kernel(allocates=True)

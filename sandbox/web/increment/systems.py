@@ -80,3 +80,4 @@ class System(NamedTuple):
     memory: Memory
     past: Past
     wanted: Floats  # (B, 3) is the body asked for, and where it is to go [R]
+    box: tuple[float, ...] | None  # the cell, as kernels of core have it

@@ -1,4 +1,4 @@
-"""``python -m sandbox.web.wasm OUT.wasm``: all that a page calls, as one file. In a process of its own."""
+"""``python -m sandbox.web.wasm OUT.wasm [periodic]``: all that a page calls, as one file. In a process of its own."""
 
 from __future__ import annotations
 
@@ -8,6 +8,10 @@ from pathlib import Path
 from sandbox.web.wasm.target import aim
 
 aim()
+
+from sandbox.web.increment import cell  # noqa: E402
+
+cell.PERIODIC = sys.argv[2:] == ["periodic"]
 
 from sandbox.web.increment.entries import ENTRIES  # noqa: E402
 from sandbox.web.wasm.linking import build  # noqa: E402

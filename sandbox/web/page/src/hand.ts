@@ -15,10 +15,7 @@ function grab(by: number | "keys") {
 
 function pull(x: number, y: number) {
   if (!Number.isFinite(x + y)) return; // in a window without any room
-  for (const pane of panes) {
-    pane.target = [x, y];
-    pane.hold();
-  }
+  for (const pane of panes) pane.want(x, y);
   hand("move", x, y);
 }
 

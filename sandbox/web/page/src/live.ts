@@ -29,6 +29,7 @@ export interface Packing {
   title: string[];
   dash: number[];
   bounds: [number, number, number, number];
+  width: number | null; // of a periodic cell [R]
   radius: number; // how near the handle is grabbed [R]
   bodies: { role: string; discs: number[]; segments: number[]; polygons: number[][] }[]; // as seen from the body
 }

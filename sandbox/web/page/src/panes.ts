@@ -4,6 +4,7 @@ import type { Live, Packing } from "./live";
 import { told, type Told } from "./sentences";
 import { lamp } from "./trust";
 import { MARKS, type Command, type Seen } from "./shared";
+import { the } from "./stage";
 
 export const $ = <Kind extends HTMLElement>(id: string) => document.getElementById(id) as Kind;
 
@@ -18,6 +19,9 @@ export function setText(node: HTMLElement, text: string) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+// What has gone round a periodic cell is drawn where its image is.
+const folded = (x: number, width: number | null) => (width ? x - width * Math.floor(x / width) : x);
+
 const LETTER = 8; // [px] of one, about
 const FRESH = 40; // increments for which an event is spoken of
 
@@ -28,6 +32,7 @@ export class Pane {
   camera: PlayerCamera = { k: 1, x: 0, y: 0 };
   fresh = true; // is there something new to be drawn?
   target: [number, number] | null = null; // where the hand wants the body [R]
+  private readonly width: number | null; // of a periodic cell [R]
   private readonly name = element("strong");
   private readonly value = element("span", "value");
   private readonly lamp = element("span", "lamp");
@@ -42,14 +47,16 @@ export class Pane {
   private room = 0; // for what is said of the lamp [px]
 
   constructor(private readonly live: Live, readonly index: number) {
-    const { name, title, dash, bounds } = live.packings[index];
+    const { name, title, dash, bounds, width } = live.packings[index];
+    this.width = width;
     const packings = PAGE.packings as Record<string, { colour: number }>;
     const none = new Float64Array();
     this.shown = {
       ...{ packing: name, title, moments: 1, count: 0, labels: [], there: [], pointed: [], squeezed: [] },
-      ...{ x: none, y: none, p: none, q1: none, q2: none, rest: none, nu: none, spin: none, rubs: false, box: null },
+      ...{ x: none, y: none, p: none, q1: none, q2: none, rest: none, nu: none, spin: none, rubs: false },
       ...{ pressure: none, stress: none, motion: none, i: [], j: [], pairs: 0, withBodies: 0, bearing: none, dx: none, dy: none, active: [new Uint32Array()] },
       ...{ bodies: [], handles: [], bounds, stroke: [], force: [], at: [0], counts: live.counts, events: [] },
+      box: width ? { wide: true, high: false, size: Float64Array.of(width, Infinity, 0) } : null,
       look: { colour: packings[name].colour, dash },
     };
     this.canvas.setAttribute("role", "img");
@@ -106,6 +113,7 @@ export class Pane {
     const withBodies = seen.endX.length;
     const grain = (k: number) => seen.first[contacts - withBodies + k];
     Object.assign(shown, seen.grains, {
+      x: seen.grains.x.map((x) => folded(x, this.width)),
       ...{ count: n, labels: seen.label, there: new Uint8Array(n).fill(1) },
       ...{ pressure: seen.pressure, stress: seen.stress, motion: seen.motion },
       ...{ pointed: seen.pointed, squeezed: seen.squeezed, rubs: seen.grains.spin.some((angle) => angle !== 0) },
@@ -113,7 +121,7 @@ export class Pane {
       dx: seen.endX.map((x, k) => x - seen.grains.x[grain(k)]),
       dy: seen.endY.map((y, k) => y - seen.grains.y[grain(k)]),
       active: [Uint32Array.from(seen.first.keys())],
-      bodies: live.packings[this.index].bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns))),
+      bodies: live.packings[this.index].bodies.map((body, k) => placed(body, seen.places.subarray(k * live.layout.columns), this.width)),
     });
     this.sentences = told(live, seen.said);
     if (!seen.back) this.goOn();
@@ -153,14 +161,26 @@ export class Pane {
     return say(this.shown.title);
   }
 
+  private place({ places }: Seen): Float64Array {
+    return places.subarray(this.live.handle.body * this.live.layout.columns);
+  }
+
+  // The hand wants the body at this place, or at that image of it which is nearest: the kernels see it so too.
+  want(x: number, y: number) {
+    const turns = this.seen && this.width ? Math.round((this.place(this.seen)[0] - x) / this.width) : 0;
+    this.target = [x + turns * (this.width ?? 0), y];
+    this.hold();
+  }
+
   // The handle, where it is and where it is wanted.
   hold() {
     this.fresh = true;
     if (!this.seen) return;
-    const { body, axis } = this.live.handle;
-    const [x, y] = this.seen.places.subarray(body * this.live.layout.columns);
+    const { axis } = this.live.handle;
+    const [there, y] = this.place(this.seen);
+    const x = folded(there, this.width);
     const [alongX, alongY] = (axis ?? [1, 1]).map(Math.abs); // what has no axis goes anywhere
-    const [toX, toY] = this.target ? [x + (this.target[0] - x) * alongX, y + (this.target[1] - y) * alongY] : [x, y];
+    const [toX, toY] = this.target ? [x + (this.target[0] - there) * alongX, y + (this.target[1] - y) * alongY] : [x, y];
     const force = Float64Array.of(this.row("hand_x"), this.row("hand_y"));
     this.shown.handles = [{ at: Float64Array.of(x, y, toX, toY), axis, force }];
   }
@@ -198,7 +218,8 @@ export class Pane {
 
   private forceSaid(): string {
     const [, unit] = labelParts(say(run.labels.force));
-    return `${number(this.row("resisting"), 2)} ${unit}`.trim();
+    const { top, bottom } = the.plot.known;
+    return `${number(this.row("resisting"), decimalsFor(top - bottom) + 2)} ${unit}`.trim(); // hundredths of the plot
   }
 
   private outSaid(): string {
@@ -226,9 +247,16 @@ export class Pane {
   }
 }
 
-function placed(body: Packing["bodies"][number], [x, y]: Float64Array): PlayerBody {
+function placed(body: Packing["bodies"][number], [x, y]: Float64Array, width: number | null): PlayerBody {
   const shape: number[] = [];
-  for (let k = 0; k < body.discs.length; k += 3) shape.push(x + body.discs[k], y + body.discs[k + 1], body.discs[k + 2]);
+  for (let k = 0; k < body.discs.length; k += 3) {
+    const [across, radius] = [folded(x + body.discs[k], width), body.discs[k + 2]];
+    for (const turns of width ? [-1, 0, 1] : [0]) {
+      const image = across + turns * (width ?? 0);
+      if (!width || (image + radius > 0 && image - radius < width)) shape.push(image, y + body.discs[k + 1], radius);
+    }
+  }
+  const discs = shape.length / 3;
   for (let k = 0; k < body.segments.length; k += 5) {
     const [x0, y0, x1, y1, radius] = body.segments.slice(k, k + 5);
     shape.push(x + x0, y + y0, x + x1, y + y1, radius);
@@ -236,7 +264,7 @@ function placed(body: Packing["bodies"][number], [x, y]: Float64Array): PlayerBo
   for (const corners of body.polygons) corners.forEach((value, k) => shape.push(value + (k % 2 ? y : x)));
   return {
     ...{ role: body.role, there: [1], shape: Float64Array.from(shape), columns: shape.length },
-    ...{ discs: body.discs.length / 3, segments: body.segments.length / 5 },
+    ...{ discs, segments: body.segments.length / 5 },
     polygons: body.polygons.map((corners) => corners.length / 2),
   };
 }

@@ -63,7 +63,7 @@ interface PlayerPane {
   nu: Float64Array;
   spin: Float64Array;
   rubs: boolean;
-  box: null;
+  box: { wide: boolean; high: boolean; size: Float64Array } | null;
   i: ArrayLike<number>;
   j: ArrayLike<number>;
   pairs: number;
