@@ -16,6 +16,7 @@ from core.frictional_contacts import Origin, Pulls, before_lists
 from core.hand import MOST_TRIES, SHORTEST, SLACK
 from core.jit import kernel
 from core.passage import deep_grains, pass_faces
+from core.prediction import carry_on
 from sandbox.web.increment.bodies import hand_force, move_bodies, rows_of, too_much
 from sandbox.web.increment.contacts import IMAGE_X, IMAGE_Y, OVERLAP, Touching, reactions, touching
 from sandbox.web.increment.relaxation import (
@@ -105,13 +106,7 @@ def predict(grains, past, moved, contacts):
     held[contacts.i] = 1.0
     held[contacts.j] = 1.0
     held[contacts.grain] = 1.0
-    state, last = grains.state, past.last
-    for i in range(held.shape[0]):
-        x, y = last[0, i] * share, last[1, i] * share
-        distance = np.sqrt(x * x + y * y)
-        weight = held[i] * min(1.0, np.sqrt(now) / max(distance, 1e-12))
-        for row in range(5):
-            state[row, i] += last[row, i] * share * weight
+    carry_on(grains.state, past.last, held, share, np.sqrt(now))
 
 
 @kernel
