@@ -92,13 +92,13 @@ class Relaxation:
         count = len(packing)
         self._box = None if packing.box is None else packing.box.kernel_form()
         _check_box(packing, skin)
-        rows = endless(np.zeros((0, 8)) if primitives is None else primitives, packing.box)
-        self._primitives = np.ascontiguousarray(rows)
+        given = np.zeros((0, 8)) if primitives is None else primitives
+        rows = np.ascontiguousarray(endless(given, packing.box))
         self._rigid = None
         if len(rows):
-            self._rigid = rigid_contacts.allocate(self._primitives, max(count, 1))
+            self._rigid = rigid_contacts.allocate(rows, max(count, 1))
         self._origin = friction
-        self._contacts = None if friction is None else before_lists(friction, self._primitives)
+        self._contacts = None if friction is None else before_lists(friction, rows)
         self._weight = _weight(packing, gravity, drag)
         self._listed = False  # have there been lists yet?
         # Which grains have gone through which edges, turned over each time.

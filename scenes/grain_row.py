@@ -7,6 +7,7 @@ no force runs sideways.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from scenes.checks import Check, Track, below_height
 from scenes.grains import FRICTION, MATERIAL, friction
 from scenes.parameter import Parameter
 from scenes.registry import register
+from scenes.relaxing import MAX_ITERATIONS, TOLERANCE
 from scenes.remarks import Latest, Remarks
 from scenes.scene import STRONGEST, Curve, Handle, Scene, Setup, Values, hand, solver
 from scenes.text import Text
@@ -60,24 +62,8 @@ class GrainRow(Scene):
         Parameter(
             "step", 0.005, "R", 1e-4, 0.05, "longest move of the piston in one increment", live=True
         ),
-        Parameter(
-            "tolerance",
-            1e-5,
-            "",
-            1e-8,
-            0.3,
-            "largest residual force over mean contact force at the end of an increment",
-            live=True,
-        ),
-        Parameter(
-            "max_iterations",
-            50_000,
-            "",
-            10,
-            1_000_000,
-            "force evaluations after which an increment ends unconverged, and says so",
-            live=True,
-        ),
+        replace(TOLERANCE, default=1e-5),
+        replace(MAX_ITERATIONS, default=50_000),
     )
 
     def build(

@@ -9,6 +9,24 @@ from core.settings import LONGEST_STEP
 from scenes.grains import recipe
 from scenes.parameter import Parameter, Value
 
+TOLERANCE = Parameter(
+    "tolerance",
+    1e-2,
+    "",
+    1e-8,
+    0.3,
+    "largest residual force over mean contact force at the end of an increment",
+    live=True,
+)
+MAX_ITERATIONS = Parameter(
+    "max_iterations",
+    20_000,
+    "",
+    10,
+    1_000_000,
+    "force evaluations after which an increment ends unconverged, and says so",
+    live=True,
+)
 # Increment and tolerance, for play and record alike, come from the work-precision plots of `study accuracy`, see
 # assets/studies/accuracy. At 1e-2 the force that a hand feels is off by as much as the model is (2 % with C = 50 against hard
 # contacts, up to 2.1 % by the contact law) in the press, the shear cell, the shrinking box and both hoppers; with friction the
@@ -27,24 +45,8 @@ SOLVER = (
         "longest move of a body in one increment; never more than a quarter of the smallest radius",
         live=True,
     ),
-    Parameter(
-        "tolerance",
-        1e-2,
-        "",
-        1e-8,
-        0.3,
-        "largest residual force over mean contact force at the end of an increment",
-        live=True,
-    ),
-    Parameter(
-        "max_iterations",
-        20_000,
-        "",
-        10,
-        1_000_000,
-        "force evaluations after which an increment ends unconverged, and says so",
-        live=True,
-    ),
+    TOLERANCE,
+    MAX_ITERATIONS,
 )
 
 

@@ -7,6 +7,7 @@ goes. Lengths here are in the radius of a large grain, forces in k R. For what t
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from core.settings import LONGEST_STEP, Settings
 from scenes.checks import Check, Track, below_height
 from scenes.parameter import Parameter
 from scenes.registry import register
+from scenes.relaxing import MAX_ITERATIONS, TOLERANCE
 from scenes.remarks import Latest, Remarks
 from scenes.scene import STRONGEST, Handle, Scene, Setup, Values, hand, hand_strength
 from scenes.text import Text
@@ -78,24 +80,8 @@ class SingleGrain(Scene):
         Parameter(
             "step", 0.005, "R", 1e-4, 0.15, "longest move of the plate in one increment", live=True
         ),
-        Parameter(
-            "tolerance",
-            1e-8,
-            "",
-            1e-9,
-            0.3,
-            "largest residual force over mean contact force at the end of an increment",
-            live=True,
-        ),
-        Parameter(
-            "max_iterations",
-            20_000,
-            "",
-            10,
-            1_000_000,
-            "force evaluations after which an increment ends unconverged, and says so",
-            live=True,
-        ),
+        replace(TOLERANCE, default=1e-8, low=1e-9),
+        MAX_ITERATIONS,
     )
 
     def validate(self, settings: Values) -> None:
