@@ -14,7 +14,7 @@ from sandbox.session.commands import DrawWall, Erase, Place, Protocol
 from sandbox.session.replay import replay
 from sandbox.session.session import Session
 from tests.cli.test_commands import rows_of, sandbox, state
-from tests.session.test_editing import built, do
+from tests.session.edited import built, do
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from sandbox.files.autosave import ASIDE, Autosave, Found, find
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import DrawWall, Place, Protocol
 from sandbox.session.session import Session
-from tests.session.test_editing import built, do
+from tests.session.edited import built, do
 
 REPOSITORY = Path(__file__).parents[2]
 NEVER = 1e6  # [s] the thread does not write by itself

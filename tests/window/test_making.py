@@ -20,7 +20,7 @@ from sandbox.session.commands import Change, DrawWall, Place, Protocol, Undo
 from sandbox.session.frame import Frame
 from sandbox.session.replay import replay
 from sandbox.window.solvers.panes import Panes
-from tests.session.test_editing import built, do
+from tests.session.edited import built, do
 
 PATIENCE = 60.0  # [s]
 WALL = DrawWall(((20.0, 3.0), (24.0, 4.0)))

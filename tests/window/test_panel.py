@@ -2,36 +2,25 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterator
-from dataclasses import replace
 
 import pygame
 import pytest
 
-from sandbox.draw.text import BODY, SMALL, Type
 from sandbox.draw.widgets.controls import (
-    PAD,
     Button,
     Choice,
     Heading,
-    Place,
     Slider,
     Stepper,
     TextField,
-    parts_of,
 )
-from sandbox.draw.widgets.look import Attention, draw_control
-from sandbox.draw.widgets.panel_frame import FOOT_LINES
-from sandbox.session.commands import Change, Command, Protocol, Reset
+from sandbox.session.commands import Change, Protocol, Reset
 from sandbox.window.display import is_fullscreen
 from sandbox.window.focus import FIRST_REPEAT, Focus
-from sandbox.window.panel.line_edit import Edit
-from sandbox.window.panel.panel import Panel
-from sandbox.window.panel.parameters import ParameterSection, Wishes
 from sandbox.words import language, words
 from scenes import registry
-from tests.draw.frames import intruder_frame
+from tests.window.at_panel import box, control, go_to, number, sent, track, value
 from tests.window.desk import Desk
 
 
@@ -42,119 +31,6 @@ def desk() -> Iterator[Desk]:
     place.app.tick()
     yield place
     place.app.close()
-
-
-def helps_of_scenes(panel: Panel) -> set[str]:
-    """What is said of parameters in every scene."""
-    frame, helps = intruder_frame(4), set()
-    for name in registry.names():
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(Wishes, "frame", replace(frame, scene=name))
-            for section in panel.sections:
-                if isinstance(section, ParameterSection):
-                    helps |= {control.help for control in section.controls()}  # type: ignore[union-attr]
-    return helps
-
-
-def with_every_word(place: Place) -> Iterator[Place]:
-    """A control as it is, a slider at its ends as well, and a choice with each of its options."""
-    control = place.control
-    yield place
-    if isinstance(control, Slider):
-        for value in (control.low, control.high):
-            yield replace(place, control=replace(control, value=value))
-    elif isinstance(control, Choice):
-        for option in control.options:
-            yield replace(place, control=replace(control, value=option.value))
-
-
-@pytest.mark.parametrize(("size", "scale"), [((1280, 720), 1.0), ((800, 600), 3.0)], ids=str)
-def test_no_word_of_the_panel_is_cut_in_any_language(
-    size: tuple[int, int], scale: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """All sections, brush and a grain that is looked at too, with the parameters of all scenes."""
-    parameters = {p.name: p for name in registry.names() for p in registry.get(name).parameters}
-    monkeypatch.setattr(Wishes, "parameters", lambda _: list(parameters.values()))
-    original, cut = Type.shortened, []
-
-    def shortened(self: Type, text: str, size: float, width: float, bold: bool = False) -> str:
-        shown = original(self, text, size, width, bold)
-        cut.extend([text] * (shown != text))
-        return shown
-
-    desk = Desk(size, scale)
-    with contextlib.closing(desk.app):
-        desk.start()
-        desk.key(pygame.K_b)
-        desk.key(pygame.K_i)
-        panel = desk.app.panel
-        panel.folded.clear()
-        if not panel.drawer.shown:
-            panel.fold()
-        monkeypatch.setattr(Type, "shortened", shortened)
-        for code in language.available():
-            language.use(code)
-            panel.tick(0.0)
-            assert len(panel._places.all) > len(parameters)
-            for place in panel._places.all:
-                for shown_place in with_every_word(place):
-                    draw_control(desk.app.stage.renderer.painter(), shown_place, Attention())
-            assert cut == [], code
-            if scale == 1.0:  # help, at the foot
-                type_, room = desk.app.stage.renderer.type, panel.rect.width - 2 * round(PAD)
-                helps = {place.control.help for place in panel._places.all} | helps_of_scenes(panel)
-                long = [t for t in helps if len(type_.wrapped(t, SMALL, room)) > FOOT_LINES]
-                assert long == [], code
-
-
-def box(desk: Desk, name: str) -> pygame.Rect:
-    """Where a control is, scrolled into view."""
-    panel = desk.app.panel
-    panel.scroll = panel._places.scroll_to(name, panel.scroll, panel._view, 0)
-    desk.app.tick()
-    rect = panel.place_of(name)
-    assert rect is not None, name
-    return rect
-
-
-def control(desk: Desk, name: str) -> object:
-    place = desk.app.panel._places.named(name)
-    return None if place is None else place.control
-
-
-def value(desk: Desk, name: str) -> float:
-    found = control(desk, name)
-    assert isinstance(found, Slider)
-    return found.value
-
-
-def track(desk: Desk, name: str) -> pygame.Rect:
-    box(desk, name)
-    place = desk.app.panel._places.named(name)
-    assert place is not None
-    parts = parts_of(place.control, place.rect, desk.app.stage.renderer.type)
-    return parts.track.move(desk.app.panel.rect.left, -desk.app.panel.scroll)
-
-
-def number(desk: Desk, name: str) -> tuple[int, int]:
-    box(desk, name)
-    place = desk.app.panel._places.named(name)
-    assert place is not None
-    parts = parts_of(place.control, place.rect, desk.app.stage.renderer.type)
-    return parts.box.move(desk.app.panel.rect.left, -desk.app.panel.scroll).center
-
-
-def go_to(desk: Desk, name: str) -> None:
-    """By Tab alone."""
-    for _ in range(90):
-        if desk.app.stage.focus.ring == name:
-            return
-        desk.key(pygame.K_TAB)
-    raise AssertionError(f"Tab never came to {name}")
-
-
-def sent(desk: Desk) -> list[Command]:
-    return desk.session.commands
 
 
 NU = "grains/regular_poisson_ratio"  # acts at once
@@ -547,100 +423,3 @@ def test_every_switch_of_every_scene_is_taken(scene: str, parameter: str, defaul
             )
     finally:
         desk.app.close()
-
-
-# -- typing --
-
-
-def edited(text: str, *keys: int | tuple[int, int] | str) -> Edit:
-    """After keys, keys with modifiers, and texts."""
-    edit = Edit.of("x", text)
-    for key in keys:
-        if isinstance(key, str):
-            edit.write(key)
-        else:
-            code, mod = key if isinstance(key, tuple) else (key, 0)
-            edit.key(pygame.event.Event(pygame.KEYDOWN, key=code, unicode="", mod=mod))
-    return edit
-
-
-SHIFT, CTRL, CMD = pygame.KMOD_LSHIFT, pygame.KMOD_LCTRL, pygame.KMOD_LMETA
-HOME, END, LEFT, RIGHT = pygame.K_HOME, pygame.K_END, pygame.K_LEFT, pygame.K_RIGHT
-BACK, DELETE = pygame.K_BACKSPACE, pygame.K_DELETE
-
-
-@pytest.mark.parametrize(
-    ("keys", "text"),
-    [
-        ((), "one two"),
-        (("q",), "q"),  # all is selected at first
-        ((END, "d", HOME, "z"), "zone twod"),
-        ((HOME, DELETE, RIGHT, BACK), "e two"),
-        ((BACK,), ""),
-        ((LEFT, "z"), "zone two"),  # to the side of what was selected
-        ((RIGHT, "z"), "one twoz"),
-        ((END, (LEFT, SHIFT), (LEFT, SHIFT), "x"), "one tx"),
-        ((HOME, (END, SHIFT), DELETE), ""),
-        ((END, (LEFT, CTRL), "z"), "one ztwo"),
-        ((HOME, (RIGHT, CTRL), "z"), "onez two"),
-        ((END, (BACK, CTRL)), "one "),
-        ((END, (LEFT, CTRL | SHIFT), (pygame.K_x, CTRL), HOME, (pygame.K_v, CTRL)), "twoone "),
-        ((END, (pygame.K_a, CMD), (pygame.K_c, CMD), END, (pygame.K_v, CMD)), "one twoone two"),
-        (("two\nlines\t",), "twolines"),
-        (("x" * 100,), "x" * 80),
-        ((pygame.K_F5, (pygame.K_q, CTRL)), "one two"),
-    ],
-)
-def test_editing_a_line(keys: tuple[int | tuple[int, int] | str, ...], text: str) -> None:
-    pygame.display.init()
-    edit = edited("one two", *keys)
-    assert edit.text == text
-    assert edit.changed == (text != "one two")
-
-
-def test_clipboard_by_place_where_letters_are_others() -> None:
-    """On a Russian keyboard Ctrl and the key of V."""
-    pygame.display.init()
-    edit = edited("one", (pygame.K_c, CTRL), END)
-    paste = {"key": ord("м"), "scancode": pygame.KSCAN_V, "unicode": "м", "mod": CTRL}
-    edit.key(pygame.event.Event(pygame.KEYDOWN, paste))
-    assert edit.text == "oneone"
-
-
-def test_a_click_puts_the_caret_between_letters(desk: Desk) -> None:
-    desk.app.panel.folded.clear()
-    desk.app.tick()
-    box(desk, "files/name")
-    place = desk.app.panel._places.named("files/name")
-    assert place is not None
-    type_ = desk.app.stage.renderer.type
-    inside = parts_of(place.control, place.rect, type_).box.move(
-        desk.app.panel.rect.left, desk.app.panel.rect.top - desk.app.panel.scroll
-    )
-    desk.click(inside.center)
-    desk.type("abcdef")
-    desk.click((inside.left + 8 + type_.width("abc", BODY), inside.centery))
-    desk.type("-")
-    assert desk.app.panel.edit is not None
-    assert desk.app.panel.edit.text == "abc-def"
-    desk.click((inside.right - 2, inside.centery))
-    desk.key(pygame.K_BACKSPACE)
-    assert desk.app.panel.edit.text == "abc-de"
-
-
-def test_an_input_method_has_the_keys_while_it_composes(desk: Desk) -> None:
-    desk.app.panel.folded.clear()
-    desk.app.tick()
-    go_to(desk, "files/name")
-    desk.key(pygame.K_RETURN)
-    desk.post(pygame.TEXTEDITING, text="ni", start=2, length=0)
-    assert desk.app.panel.edit is not None
-    assert desk.app.panel.edit.composed == "ni"
-    desk.key(pygame.K_RETURN)  # takes what is offered
-    desk.key(pygame.K_BACKSPACE)
-    desk.post(pygame.TEXTINPUT, text="日")
-    assert desk.app.panel.edit.text == "日"
-    desk.key(pygame.K_RETURN)
-    found = control(desk, "files/name")
-    assert isinstance(found, TextField)
-    assert found.text == "日"

@@ -18,7 +18,7 @@ from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.session.commands import Protocol
 from sandbox.session.replay import replay
 from sandbox.session.session import Session
-from tests.session.test_editing import built, do
+from tests.session.edited import built, do
 
 REPOSITORY = Path(__file__).parents[2]
 PATIENCE = 120.0  # [s]

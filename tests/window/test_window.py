@@ -22,7 +22,7 @@ from sandbox.window.display import Looks
 from sandbox.window.picture import progress_of
 from sandbox.words import language, words
 from scenes import registry
-from tests.session.test_editing import built
+from tests.session.edited import built
 from tests.window import desk as desks
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
