@@ -30,22 +30,26 @@ NEAR = 0.02  # [R] half a pixel, about: a body nearer to the hand than that need
 MOVED = 1e-4  # [R] and one that has gone further has moved
 PATIENCE = 600.0  # until a scene is built, at a first start [s]
 TURN = 1.0  # [s] until a turn is given up
-SIZE = (1280, 720)  # of the window [px]
 
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class Case:
-    """What is dragged: ``way`` is a unit vector, ``speed`` that of the hand [R/s], for so many ``seconds``, ``rounds`` times."""
+    """What is dragged in the first of the ``packings``, and so in those beside it.
+
+    ``way`` is a unit vector, ``speed`` that of the hand [R/s], for so many ``seconds``, ``rounds`` times, in a window of
+    ``size`` [px].
+    """
 
     scene: str
-    packing: str
+    packings: tuple[str, ...]
     settings: Mapping[str, object] = field(default_factory=dict)
     way: Point = (1.0, 0.0)
     speed: float = 3.0
     seconds: float = 3.0
     rounds: int = 2
+    size: tuple[int, int] = (1280, 720)
 
 
 @dataclass(frozen=True)
@@ -73,8 +77,8 @@ class Drag:
 
 def drag(case: Case, depths: Sequence[int] = (0, DEPTH)) -> list[Drag]:
     """One for each round and each of ``depths``, increments that are made ahead."""
-    panes = Panes(case.packing, 1)
-    app = App(panes, Looks(SIZE))
+    panes = Panes(case.packings[0], 1)
+    app = App(panes, Looks(case.size))
     try:
         return [_one(app, case, depth) for _ in range(case.rounds) for depth in depths]
     finally:
@@ -84,7 +88,7 @@ def drag(case: Case, depths: Sequence[int] = (0, DEPTH)) -> list[Drag]:
 def _one(app: App, case: Case, depth: int) -> Drag:
     stage = app.stage
     stage.panes.depth = depth
-    stage.start(case.scene, case.settings, (case.packing,))
+    stage.start(case.scene, case.settings, case.packings)
     end = time.monotonic() + PATIENCE
     while app.shows_splash or stage.panes.snapshot.phase != "running":
         if time.monotonic() > end:
@@ -185,8 +189,9 @@ def main(words: Sequence[str]) -> int:
     os.environ.setdefault("SDL_AUDIODRIVER", "dummy")
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         os.environ.setdefault("SDL_VIDEODRIVER", "dummy")
-    given = json.loads(words[0])
-    for seen in drag(Case(**{**given, "way": tuple(given.get("way", (1.0, 0.0)))})):
+    given: dict[str, Any] = json.loads(words[0])
+    fields: dict[str, Any] = {k: tuple(v) if isinstance(v, list) else v for k, v in given.items()}
+    for seen in drag(Case(**fields)):
         sys.stdout.write(f"{json.dumps(asdict(seen))}\n")
     sys.stdout.flush()
     return 0

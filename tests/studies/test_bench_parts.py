@@ -16,6 +16,7 @@ from sandbox.session.session import Session
 from sandbox.studies.bench import drawing as bench_drawing
 from sandbox.studies.bench import frames as bench_frames
 from sandbox.studies.bench import peers as bench_peers
+from sandbox.studies.bench import pictures as bench_pictures
 from sandbox.studies.bench import report as bench_report
 from sandbox.studies.bench import scaling as bench_scaling
 from sandbox.studies.bench import smoothness as bench_smoothness
@@ -353,3 +354,21 @@ def test_slower_hands_are_tried_where_nothing_is_aimed_at(monkeypatch: pytest.Mo
 def test_a_turn_that_was_not_seen_is_no_good_one() -> None:
     assert seen_at(3.0, 99).turn == pytest.approx(30.0)
     assert seen_at(3.0, 99, None).turn == math.inf
+
+
+def test_pictures_a_second_are_judged_by_the_middle_of_the_drags(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[dict[str, object]] = []
+
+    def dragged(**case: object) -> list[dict[str, object]]:
+        asked.append(case)
+        return [{"rate": rate} for rate in (61.0, 38.0, 58.0)]
+
+    monkeypatch.setattr(bench_pictures, "dragged", dragged)
+    section = bench_pictures.section(seconds=1.0, rounds=2)
+    assert [row.met for row in section.rows] == [False, False, False, True]
+    assert section.rows[-1].what == "intruder, 600 grains, auxetic, 2560×1440"
+    assert section.rows[-1].measured == "58 (38 to 61)"
+    assert [case["size"] for case in asked] == [case.size for case in bench_pictures.CASES]
+    json.dumps(section.data, allow_nan=False)

@@ -34,8 +34,12 @@ def test_a_turn_is_seen_in_the_first_picture_of_the_way_back() -> None:
 
 def test_a_hand_drags_in_a_window_ahead_and_not() -> None:
     settings = {"grains": 60, "intruder_radius": 2.0, "hand_strength": 1000.0}
-    seen = drag(Case("intruder", "mixed", settings, seconds=0.4, rounds=1))
-    assert [one.depth for one in seen] == [0, 6]
+    alone = Case("intruder", ("mixed",), settings, seconds=0.4, rounds=1)
+    beside = Case(
+        "intruder", ("regular", "auxetic"), settings, seconds=0.4, rounds=1, size=(900, 600)
+    )
+    seen = [*drag(alone), *drag(beside)]
+    assert [one.depth for one in seen] == [0, 6, 0, 6]
     for one in seen:
         assert 0 <= one.moved <= one.due < one.pictures
         assert 0.0 < one.lag < 3.0

@@ -13,6 +13,7 @@ from sandbox.studies.bench import drawing as bench_drawing
 from sandbox.studies.bench import frames as bench_frames
 from sandbox.studies.bench import kernels as bench_kernels
 from sandbox.studies.bench import peers as bench_peers
+from sandbox.studies.bench import pictures as bench_pictures
 from sandbox.studies.bench import scaling as bench_scaling
 from sandbox.studies.bench import smoothness as bench_smoothness
 from sandbox.studies.bench import startup as bench_startup
@@ -54,6 +55,7 @@ def parts(*, quick: bool, peers: bool) -> Iterator[Callable[[], Section]]:
     yield lambda: bench_drains.section(quick=quick)
     yield lambda: bench_drawing.section(seconds=plan.drawing_seconds)
     if plan.drag_seconds > 0.0:
+        yield lambda: bench_pictures.section(seconds=plan.drag_seconds, rounds=2)
         yield lambda: bench_smoothness.section(seconds=plan.drag_seconds, rounds=2)
 
 

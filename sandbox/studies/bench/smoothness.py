@@ -20,7 +20,8 @@ from scenes.scene import HAND_STRENGTH, STRONGEST
 
 SHARE = 0.95  # of the pictures
 SPEEDS = (3.0, 2.0, 1.0)  # of the hand [R/s]; the first has a target
-STEP = 0.05  # [R] = 3 R/s over 60 pictures a second
+# A step of 0.05 R is 3 R/s over 60 pictures a second; and nothing that is dragged locks.
+DRAGGED: dict[str, object] = {"step": 0.05, HAND_STRENGTH: STRONGEST}
 REPOSITORY = Path(__file__).parents[3]
 PATIENCE = 900.0  # [s]
 
@@ -69,31 +70,30 @@ class Seen:
 
 def watch(case: Case, speed: float, *, seconds: float, rounds: int) -> Seen:
     """A window of its own."""
-    given = {
-        "scene": case.scene,
-        "packing": case.packing,
-        "way": case.way,
-        "speed": speed,
-        "seconds": seconds,
-        "rounds": rounds,
-        "settings": {
-            "grains": case.grains,
-            "step": STEP,
-            HAND_STRENGTH: STRONGEST,
-            **case.settings,
-        },
-    }
+    drags = dragged(
+        scene=case.scene,
+        packings=[case.packing],
+        way=case.way,
+        speed=speed,
+        seconds=seconds,
+        rounds=rounds,
+        settings={"grains": case.grains, **DRAGGED, **case.settings},
+    )
+    return Seen(speed, tuple(drags))
+
+
+def dragged(**case: object) -> list[dict[str, Any]]:
+    """What a window in a process of its own sees of drags: fields of ``Case`` and ``Drag`` of ``sandbox.window.smoothness``."""
     paths = [str(REPOSITORY), os.environ.get("PYTHONPATH", "")]
     done = subprocess.run(
-        [sys.executable, "-m", "sandbox.window.smoothness", json.dumps(given)],
+        [sys.executable, "-m", "sandbox.window.smoothness", json.dumps(case)],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
         stdout=subprocess.PIPE,
         text=True,
         check=True,
         timeout=PATIENCE,
     )
-    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-    return Seen(speed, tuple(map(json.loads, lines)))
+    return [json.loads(line) for line in done.stdout.splitlines() if line.startswith("{")]
 
 
 def measure(case: Case, *, seconds: float, rounds: int) -> list[Seen]:
