@@ -56,7 +56,7 @@ def left_over(unbalanced: float, residual: float, contact_force: float) -> float
 
 
 # For what the study has not seen, scenes, packings, and what a person has made: about that of the worst it has.
-UNKNOWN = Estimate(Bound(10.0, 1.0, 0.0), Bound(300.0, 1.0, 0.0))
+UNKNOWN = Estimate(Bound(10.0, 1.0, 0.0), Bound(350.0, 1.0, 0.0))
 
 
 @dataclass(frozen=True)
