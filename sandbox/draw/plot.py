@@ -172,7 +172,8 @@ def draw_plot(
         )
         return box
     if limit is not None and limit <= axes[3]:
-        _draw_limit(painter, box, limit)
+        present = [part for curve, part in zip(curves, parts, strict=True) if not curve.faint]
+        _draw_limit(painter, box, limit, present)
     _draw_curves(painter, box, curves, parts)
     ends = [
         (float(box.x(part[0][-1])), float(box.y(part[1][-1])), _colour(painter, curve), curve.dash)
@@ -191,16 +192,16 @@ def _draw_headline(
     gutter: int,
     line: int,
 ) -> None:
-    """What is plotted at the left; its present value, or what marks mean, at the right."""
-    pad = round(8 * painter.scale)
-    left, right = rect.left + gutter, rect.right - 2 * pad
+    """What is plotted at the left; at the right the present value of one alone, and as far as there is room, what marks mean."""
+    type_, pad = painter.type, round(8 * painter.scale)
+    left, end = rect.left + gutter, float(rect.right - 2 * pad)
     if len(curves) == 1:
         force = finite_part(curves[0])[1]
-        end = _draw_value(painter, (right, line), force, digits, unit_of(label))
-    else:
-        kinds = [event.kind for curve in curves if not curve.faint for event in curve.events]
-        end = draw_event_key(painter, right, line, kinds, 0.5 * (right - rect.left) - gutter)
-    text = painter.type.shortened(label, SMALL, end - left - 2 * pad)
+        end = _draw_value(painter, (end, line), force, digits, unit_of(label)) - 2 * pad
+    kinds = [event.kind for curve in curves if not curve.faint for event in curve.events]
+    room = end - left - type_.width(label, SMALL) - 3 * pad
+    end = draw_event_key(painter, end, line, kinds, room)
+    text = type_.shortened(label, SMALL, end - left - 2 * pad)
     painter.text(text, left, line, size=SMALL, colour=painter.theme.soft_text)
 
 
@@ -225,18 +226,33 @@ def _draw_curves(
             draw_events(painter, inside, at)
 
 
-def _draw_limit(painter: Painter, box: PlotBox, limit: float) -> None:
-    """How strong the hand is: its colour, dashed, with its name at the left end."""
+def _draw_limit(
+    painter: Painter, box: PlotBox, limit: float, curves: Sequence[tuple[Floats, Floats]]
+) -> None:
+    """How strong the hand is: its colour, dashed, with its name where no curve runs, if there is such a place."""
     scale, theme, type_ = painter.scale, painter.theme, painter.type
     y = float(box.y(limit))
     ends = np.array([box.rect.left, box.rect.right], dtype=np.float64)
     dash = [length * scale for length in LIMIT_DASH]
     painter.polyline(ends, np.full(2, y), 1.6 * scale, HAND, box.rect, dash)
     text = words.HAND_LIMIT.format(strength=shown(limit))
-    half = type_.height(SMALL) // 2 + round(2 * scale)
+    width, half = type_.width(text, SMALL), type_.height(SMALL) // 2 + round(2 * scale)
+    pad = round(6 * scale)
     below = y - half < box.rect.top + half
-    place = box.rect.left + round(6 * scale), y + half if below else y - half
-    painter.text(text, *place, size=SMALL, colour=theme.soft_text)
+    middle = y + half if below else y - half
+    lefts = box.rect.left + pad, box.rect.right - pad - width
+
+    def covered(left: float) -> bool:
+        return any(
+            np.any(
+                (np.abs(box.x(stroke) - left - width / 2) < width / 2 + pad)
+                & (np.abs(box.y(force) - middle) < half)
+            )
+            for stroke, force in curves
+        )
+
+    left = next((left for left in lefts if not covered(left)), lefts[0])
+    painter.text(text, left, middle, size=SMALL, colour=theme.soft_text)
 
 
 def _draw_value(

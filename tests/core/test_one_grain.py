@@ -113,7 +113,7 @@ def test_overlap_takes_its_share(nu: float) -> None:
 
 @pytest.mark.parametrize(
     ("ratio", "digits"),
-    [(0.01, 0.505), (0.1, 0.554), (1.0, 1.0), (10.0, 5.125), (100.0, 46.05)],
+    [(0.01, 0.505), (0.1, 0.554), (1.0, 1.0), (10.0, 5.125), (100.0, 46.04)],
 )
 def test_compressed_from_all_sides(ratio: float, digits: float) -> None:
     """Four plates: F/(k δL) = C K/(2(2C + K)) with K = κ(1+ν), which tends to 1/(1−ν) for hard contacts.
@@ -125,7 +125,7 @@ def test_compressed_from_all_sides(ratio: float, digits: float) -> None:
     closed = stiffness * modulus / (2.0 * (2.0 * stiffness + modulus))
     grain = squeeze(nu, stiffness, TINY, plates=4)
     assert grain.force / grain.approach == pytest.approx(closed, rel=3.0 * TINY)
-    assert closed == pytest.approx(digits, rel=1e-3)
+    assert closed == pytest.approx(digits, abs=0.5e-3 if digits < 10.0 else 0.5e-2)
 
 
 @pytest.mark.parametrize("ratio", PAPER)

@@ -10,9 +10,10 @@ import pytest
 from numpy.typing import NDArray
 
 from sandbox.draw.painter import dashed
-from sandbox.draw.plot import Curve, finite_part, limits, thinned, value_digits
+from sandbox.draw.plot import Curve, PlotBox, draw_plot, finite_part, limits, thinned, value_digits
 from sandbox.draw.render import Renderer
 from sandbox.session.frame import Ahead, Frame
+from sandbox.session.history import Event
 from tests.draw.frames import curve, intruder_frame
 
 
@@ -139,3 +140,48 @@ def test_dashes_have_the_asked_length() -> None:
     x0, _, x1, _ = dashed(ends, 8.0, 4.0)
     assert (x1 - x0).sum() == pytest.approx(40.0)
     assert x0.min() == 0.0
+
+
+def drawn_plot(*curves: Curve, limit: float | None = None) -> PlotBox:
+    painter = Renderer((700, 300)).painter()
+    box = draw_plot(painter, pygame.Rect(0, 0, 700, 220), curves, "force [k R]", limit=limit)
+    assert box is not None
+    return box
+
+
+@pytest.mark.parametrize("shape", ["early", "late", "low", "both"])
+def test_how_strong_the_hand_is_stands_where_no_curve_runs(
+    shape: str, texts: list[tuple[str, pygame.Rect]]
+) -> None:
+    stroke = np.linspace(0.0, 10.0, 500)
+    force = {
+        "early": np.where(stroke < 3.0, 2.8 * stroke, 1.0),
+        "late": np.where(stroke > 7.0, 2.8 * (stroke - 7.0), 1.0),
+        "low": 0.1 * stroke,
+        "both": np.full(500, 8.8) - 1.6 * (np.arange(500) % 2),
+    }[shape]
+    box = drawn_plot(
+        Curve(stroke, force, 0),
+        Curve(np.array([0.0, 10.0]), np.array([0.0, 9.5]), 0, faint=True),
+        limit=8.0,
+    )
+    ((_, place),) = [(text, rect) for text, rect in texts if text.startswith("the hand")]
+    covered = [
+        place.collidepoint(float(box.x(x)), float(box.y(y)))
+        for x, y in zip(stroke, force, strict=True)
+    ]
+    assert any(covered) == (shape == "both")  # where there is no such place it stands at the left
+    assert box.rect.contains(place)
+
+
+def test_marks_on_one_curve_are_named_too(texts: list[tuple[str, pygame.Rect]]) -> None:
+    """Beside its latest value, and shortened away where the label of the axis needs the room."""
+    frame = replace(intruder_frame(6), events=(Event("arch", 3, 1.0, 0.1, "an arch"),))
+    for width, named in ((1280, True), (330, False)):
+        texts.clear()
+        renderer = Renderer((width, 600))
+        renderer.draw(frame)
+        plot = renderer.layout.plot
+        seen = {text: rect for text, rect in texts if plot.colliderect(rect)}
+        assert ("arch" in seen) == named
+        assert len({tuple(rect) for rect in seen.values()}) == len(seen)

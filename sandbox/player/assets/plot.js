@@ -136,7 +136,19 @@ class Plot {
     g.textAlign = "left";
     g.fillStyle = css(theme.soft_text);
     const text = word("hand_limit", { strength: short(run.limit) });
-    g.fillText(text, left + 6 * s, y < 3.4 * letters ? y + 0.8 * letters : y - 0.8 * letters);
+    const middle = y < 3.4 * letters ? y + 0.8 * letters : y - 0.8 * letters;
+    // Where no curve runs, if there is such a place.
+    const [pad, width] = [6 * s, g.measureText(text).width];
+    const lefts = [left + pad, right - pad - width];
+    const free = lefts.find((from) =>
+      run.panes.every((pane) =>
+        pane.stroke.every((stroke, k) => {
+          const x = this.x(stroke);
+          return x < from - pad || x > from + width + pad || Math.abs(this.y(pane.force[k]) - middle) > 0.8 * letters;
+        }),
+      ),
+    );
+    g.fillText(text, free ?? lefts[0], middle);
   }
 
   // A curve up to a moment, or all of it faintly.
