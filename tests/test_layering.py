@@ -99,7 +99,7 @@ ROOMS = {
     "preparation": "draw scenes core",
     "notebook": "player draw session scenes core",
     "record": "files player draw session scenes core",
-    "web": "web.increment web.wasm player files draw lessons words scenes core",
+    "web": "web.increment web.wasm ensemble player files draw lessons words scenes core",
     "web.wasm": "web.increment core",
     "web.increment": "scenes core",
     "site": "record files player session words scenes core",

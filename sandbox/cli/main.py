@@ -325,7 +325,16 @@ def _add_web(command: Command) -> None:
     web.add_argument("--out", metavar="DIR", required=True, help="folder for the pages")
     what = web.add_mutually_exclusive_group()
     what.add_argument("--scene", nargs="+", metavar="NAME", help="these scenes instead of all")
-    what.add_argument("--single", metavar="NAME", help="one scene alone, as one file")
+    what.add_argument(
+        "--single", metavar="NAME", help="one scene alone, as one file of no more than 400 kB"
+    )
+    web.add_argument(
+        "--seeds",
+        type=argument(arguments.whole_number(1, 1000)),
+        default=50,
+        metavar="N",
+        help="packings of the seeds 1 to N on each page (default: 50), with --single of as many of them as have room",
+    )
 
 
 def _add_lesson(command: Command) -> None:

@@ -37,6 +37,7 @@ def site(options: argparse.Namespace) -> int:
 
 def web(options: argparse.Namespace) -> int:
     """Write pages on which scenes run."""
+    from sandbox.ensemble.pool import Pool
     from sandbox.files.folder import prepare_folder
     from sandbox.web import building
 
@@ -45,10 +46,19 @@ def web(options: argparse.Namespace) -> int:
     folder = prepare_folder(options.out, "")
     single = options.single is not None
 
-    def tell(text: str, share: float) -> None:
-        print(f"{text}: {share:.0%}", flush=True)
-
-    written = building.write(folder, names, tell, single=single)
+    try:
+        with Pool(building.JOBS) as pool:
+            written = building.write(
+                folder,
+                names,
+                pool,
+                lambda text: print(text, flush=True),
+                seeds=options.seeds,
+                single=single,
+            )
+    except KeyboardInterrupt:
+        print(f"stopped; the pages in {folder} that are there are whole", file=sys.stderr)
+        return INTERRUPTED
     for path in written:
         print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
     return OK

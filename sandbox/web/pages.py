@@ -5,11 +5,8 @@ from __future__ import annotations
 import base64
 import html
 import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
-
-import numpy as np
 
 from sandbox.draw.lamp import ROUGH
 from sandbox.draw.theme import packing_dash
@@ -21,7 +18,8 @@ from sandbox.player.recording import view_of
 from sandbox.web.increment import course, curve
 from sandbox.web.increment.memory import COLUMNS, COUNTS, FIRST_INT, PART, ROW, SAID, SIZES
 from sandbox.web.increment.systems import PLACES
-from sandbox.web.laid_out import CURVES, Blocks, laid_out
+from sandbox.web.laid_out import CURVES, Blocks
+from sandbox.web.packed import packed
 from sandbox.web.sentences import ALL, EVENTS, Sentence, said_in
 from sandbox.web.toolchain import PAGE
 from sandbox.words import language, words
@@ -35,12 +33,12 @@ DRAWING = (
 # The window's words that the page says too.
 SPOKEN = (
     *("settled", "force_error", "handle_force_error", "handle_force_within", "within", "no_forces"),
-    *("unknown_forces", "settling", "grains_out", "hand_limit", "seed", "squeezed"),
+    *("unknown_forces", "settling", "grains_out", "hand_limit", "panel_seed", "squeezed", "paused"),
 )
 # And of the page that plays a run.
 SHARED = (
     *("view", "choices", "stage", "chains", "to_light", "to_dark", "increment", "events", "keys"),
-    *("letters", "noscript", "cannot_run", "silent"),
+    *("letters", "noscript", "cannot_run", "silent", "play", "pause"),
 )
 # Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
 STEPS = {"gravity_hopper": (0, 2), "intruder": (0, 1, 2), "single_grain": (0, 1, 2)}
@@ -84,7 +82,7 @@ SHARED_PACKING = "mixed"
 
 @dataclass(frozen=True)
 class Built:
-    """A scene with packings of several seeds: ``setups`` by seed and packing, as they are before the first increment.
+    """A scene with packings of several seeds, as they are before the first increment: those of one, and all laid out.
 
     After those of ``packings`` come the mixed ones with the other ``shares`` of auxetic grains.
     """
@@ -94,32 +92,21 @@ class Built:
     packings: tuple[str, ...]
     seeds: tuple[int, ...]
     shares: tuple[float, ...]
-    setups: tuple[tuple[Setup, ...], ...]
+    setups: tuple[Setup, ...]  # handles and labels are the same in all, bodies in all of a packing
+    blocks: tuple[tuple[Blocks, ...], ...]  # by seed and packing
 
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """The kind of each of the packings of a seed."""
-        return (*self.packings, *[SHARED_PACKING] * len(self.shares))
-
-    @property
-    def first(self) -> Setup:
-        """One of them: handles and labels are the same in all, bodies in all of a packing."""
-        return self.setups[0][0]
+    def of_first(self, count: int) -> Built:
+        """The same with no more than so many seeds."""
+        return replace(self, seeds=self.seeds[:count], blocks=self.blocks[:count])
 
 
 def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") -> str:
     """The HTML text. ``menu`` is markup before the choices. Raises InputError for a scene that a page cannot run."""
-    blocks = [
-        [
-            laid_out(built.scene, setup, built.settings, kind)
-            for setup, kind in zip(some, built.kinds, strict=True)
-        ]
-        for some in built.setups
-    ]
+    about_packings, packings = packed(built.blocks)
     script = (
         f'"use strict";\nconst PAGE = {as_json(about(_words, "page_keys"))};\n'
         f"const PLURALS = [{', '.join(map(_plural, available()))}];\n"
-        f"const LIVE = {as_json(_live(built, blocks))};\n"
+        f"const LIVE = {as_json(_live(built, about_packings))};\n"
         f"const WORKER = {as_json(scripts['worker.ts'])};\n"
         + "\n".join(asset(name) for name in DRAWING)
         + "\n"
@@ -140,7 +127,7 @@ def page(built: Built, kernels: bytes, scripts: dict[str, str], menu: str = "") 
             "story": _tour(built.scene, code),
             "noscript": html.escape(_words(code)["noscript"]),
             "kernels": _packed(kernels),
-            "packings": _packed(_against_the_first(blocks)),
+            "packings": _packed(packings),
             "script": script,
         }
     return document((PAGE / "page.html").read_text(encoding="utf-8"), values)
@@ -166,7 +153,7 @@ def _tour(scene: Scene, shown: str) -> str:
 
 def _dragged(built: Built, shown: str) -> str:
     """What is otherwise than on the desk, where a disc is dragged."""
-    if not any(body.held for body in built.first.world.bodies):
+    if not any(body.held for body in built.setups[0].world.bodies):
         return ""
     return f'<p class="soft">{spoken(lambda: words.DISC_STRAIGHT, shown)}</p>'
 
@@ -179,24 +166,13 @@ def _policy(script: str) -> str:
     )
 
 
-def _against_the_first(blocks: Sequence[Sequence[Blocks]]) -> bytes:
-    """All blocks, one behind the other: what those after the first have alike with it is 0, where they are as long."""
-    parts = [[part.view(np.uint64) for part in both] for some in blocks for both in some]
-    first = parts[0]
-    return b"".join(
-        (part if both is first or len(part) != len(model) else part ^ model).tobytes()
-        for both in parts
-        for part, model in zip(both, first, strict=True)
-    )
-
-
 def _packed(content: bytes) -> str:
     return base64.b64encode(zlib.compress(content, 9)).decode("ascii")
 
 
-def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
+def _live(built: Built, packings: dict[str, Any]) -> dict[str, Any]:
     """What the script knows of the scene: see ``live.ts``."""
-    scene, setup = built.scene, built.first
+    scene, setup = built.scene, built.setups[0]
     handle = setup.handles[0]
     body = setup.world[handle.body]
     stroke = float(built.settings.get("stroke", 1.0))
@@ -226,8 +202,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
         "about": in_each(lambda: words.about(scene.name)),
         "views": [view_of(view, {}) for view in VIEWS.values()],
         "packings": [
-            _packing(name, setup)
-            for name, setup in zip(built.packings, built.setups[0], strict=False)
+            _packing(name, setup) for name, setup in zip(built.packings, built.setups, strict=False)
         ],
         "seeds": built.seeds,
         "counts": counts,
@@ -261,7 +236,7 @@ def _live(built: Built, blocks: Sequence[Sequence[Blocks]]) -> dict[str, Any]:
         "events": EVENTS,
         "machine": STRONGEST,
         "lockedAfter": course.LOCKED_AFTER,
-        "lengths": [[[ints.nbytes, floats.nbytes] for ints, floats in some] for some in blocks],
+        "packed": packings,
         "start": {"theme": "dark", "auto": True},
     }
 
@@ -340,7 +315,7 @@ def _words(code: str) -> dict[str, str]:
     said = {"name": table["name"], "decimal": table["decimal"]}
     said |= {name: table["player"][name] for name in SHARED}
     said |= {name: table["words"][name] for name in SPOKEN}
-    said |= {name: table["buttons"][name] for name in ("reset", "undo", "drive", "new")}
+    said |= {name: table["buttons"][name] for name in ("reset", "undo", "redo", "drive")}
     said |= {f"event_{kind}": table["events"][kind] for kind in EVENTS}
     said |= {f"kinds_{kind}": text for kind, text in table["kinds"].items()}
     return said

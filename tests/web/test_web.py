@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,8 +30,9 @@ from sandbox.web.increment import course, relaxation, remarks
 from sandbox.web.increment.memory import COUNTS, ROW, Kept
 from sandbox.web.increment.observe import observe
 from sandbox.web.increment.systems import PLACES
-from sandbox.web.laid_out import Blocks, laid_out, part, state_hash
+from sandbox.web.laid_out import Blocks, laid_out, packing_in, part, state_hash
 from sandbox.web.menu import menu
+from sandbox.web.packed import GRID, packed
 from sandbox.web.pages import SLIDES, STEPS, sliders
 from sandbox.web.sentences import ALL, said_in, told
 from sandbox.words import language, words
@@ -60,6 +62,7 @@ RUNS = {
     ("single_grain", "mixed"): 64,
     ("couette", "mixed"): 64,
 }
+SEEDS = 2  # of the pages that are tried
 Run = tuple[str, str]
 pytestmark = pytest.mark.slow
 
@@ -347,13 +350,19 @@ def test_the_page_computes_no_forces() -> None:
         assert not found, f"{path.name}: {found}"
 
 
+def written(folder: Path, names: list[str], *, seeds: int, single: bool = False) -> list[Path]:
+    """Pages, packed by this process."""
+    with ThreadPoolExecutor(1) as one:
+        return building.write(folder, names, one, lambda _text: None, seeds=seeds, single=single)
+
+
 @pytest.fixture(scope="session")
 def tried(program: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What the pages do in a browser."""
     if CHROMIUM is None or shutil.which("npm") is None:
         pytest.skip("without Chromium or npm: no page can be tried")
     pages, folder = tmp_path_factory.mktemp("pages"), tmp_path_factory.mktemp("node")
-    building.write(pages, list(building.SCENES), lambda _text, _share: None)
+    written(pages, list(building.SCENES), seeds=SEEDS)
     for name in ("package.json", "package-lock.json"):
         shutil.copyfile(PAGE / name, folder / name)
     subprocess.run(
@@ -382,9 +391,68 @@ def test_the_pages_ask_for_nothing_say_nothing_and_are_open_to_all(tried: dict[s
     assert set(tried["others"]) == set(building.SCENES)
 
 
-def test_a_single_page_is_small(program: Path, tmp_path: Path) -> None:
-    (path,) = building.write(tmp_path, ["hopper"], lambda _text, _share: None, single=True)
+@pytest.mark.parametrize("name", building.SCENES)
+def test_a_single_page_is_small(
+    program: Path, periodic_program: Path, tmp_path: Path, name: str
+) -> None:
+    (path,) = written(tmp_path, [name], seeds=1, single=True)
     assert path.stat().st_size <= building.SINGLE
+
+
+def test_a_single_page_has_as_many_seeds_as_it_has_room_for(
+    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def size(seeds: int) -> int:
+        (path,) = written(tmp_path, ["grain_row"], seeds=seeds, single=True)
+        return path.stat().st_size
+
+    one, eight = size(1), size(8)
+    assert one < eight <= building.SINGLE
+    monkeypatch.setattr(building, "SINGLE", eight - 1)
+    assert one < size(8) < eight
+    assert size(40) == size(7)
+    monkeypatch.setattr(building, "SINGLE", 0)
+    assert size(8) == one
+
+
+def test_a_seed_that_cannot_be_packed_is_left_out_and_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    packings_of = building.packings_of
+
+    def fails(asked: building.Asked) -> tuple[Blocks, ...]:
+        if asked[1] != 2:
+            raise InputError("there is no room")
+        return packings_of(asked)
+
+    monkeypatch.setattr(building, "packings_of", fails)
+    with ThreadPoolExecutor(1) as one:
+        built = building.build("grain_row", (1, 2), one)
+        assert built.seeds == (2,)
+        assert "grain_row is without seed 1: there is no room" in capsys.readouterr().err
+        with pytest.raises(InputError, match="no packing of grain_row can be made"):
+            building.build("grain_row", (1, 3), one)
+
+
+def test_packings_of_pages_are_those_of_the_desk_to_half_a_millionth_of_a_radius() -> None:
+    scene = registry.get("couette")
+    packing = scene.build(scene.settings(dict(building.SCENES["couette"])), "auxetic", 3).packing
+    _, _, auxetic, *_ = building.packings_of(("couette", 3))
+    moved = np.abs(packing_in(auxetic).state - packing.state)
+    assert 0.0 < moved.max() <= 0.5 / GRID <= 0.5e-6
+    with pytest.raises(ValueError, match="not on the grid"):
+        packed(
+            [
+                [
+                    laid_out(
+                        scene,
+                        scene.build(scene.settings({}), "auxetic", 3),
+                        scene.settings({}),
+                        "auxetic",
+                    )
+                ]
+            ]
+        )
 
 
 def test_in_the_page_the_regular_hopper_locks_and_the_auxetic_one_flows(
@@ -423,6 +491,10 @@ def test_a_page_in_use_sets_undoes_and_resets(tried: dict[str, Any]) -> None:
         assert min(played) > 4, name
         assert min(more - rows for rows, more in zip(played, pulled, strict=True)) > 4, name
         assert seen["back"] == seen["before"], name
+        assert seen["redone"] == seen["far"] != seen["back"], name
+        still, later = seen["paused"]
+        assert still == [pane["rows"] for pane in seen["pulled"]], name
+        assert min(more - rows for rows, more in zip(still, later, strict=True)) > 0, name
         assert any(0.6 in pane["ratios"] for pane in seen["softer"]), name
         assert seen["end"] == seen["start"], name
         if seen["shares"]:
@@ -439,11 +511,37 @@ def test_clumsy_hands_leave_a_page_in_order(tried: dict[str, Any]) -> None:
     for rows, drawn in hands["curves"]:
         assert rows == drawn > 1
     assert hands["friction"] == "0.5"
+    with language.speaking("de"):
+        assert hands["inGerman"].startswith(f"{words.PACKINGS['regular']}: ")
     assert hands["focus"] == "undo"
     assert hands["lamps"][0] == hands["lamps"][1]
     assert min(hands["printed"]) > 100
     assert hands["pulled"] == [True, 0]
     assert hands["scrolled"] == [False]
+
+
+def test_a_seed_is_chosen_by_hand_by_key_and_by_address(tried: dict[str, Any]) -> None:
+    seeds = tried["seeds"]
+    assert seeds["offered"] == ["1", "2"]
+    assert seeds["named"] == language.table("en")["words"]["panel_seed"]
+    assert seeds["begun"] == [
+        ["1", 0],
+        ["2", 1],
+        ["1", 0],
+    ]  # as such, by address, and by one that is not there
+    assert seeds["chosen"] == [1, 0]  # from the list, and by the key
+    assert seeds["start"] == [
+        1,
+        1,
+        1,
+    ]  # increments: what is chosen while paused is shown, and stands still
+
+
+def test_the_page_unfolds_what_was_laid_out(tried: dict[str, Any]) -> None:
+    for seed, laid in enumerate(tried["laid"], 1):
+        for there, blocks in zip(laid, building.packings_of(("hopper", seed)), strict=False):
+            for block, other in zip(blocks_of(there), blocks, strict=True):
+                assert block.tobytes() == other.tobytes()
 
 
 def test_a_page_that_cannot_go_on_says_so(tried: dict[str, Any]) -> None:
@@ -457,7 +555,7 @@ def test_a_page_that_cannot_go_on_says_so(tried: dict[str, Any]) -> None:
 def test_the_page_has_the_bits_of_the_desk(
     tried: dict[str, Any], tmp_path: Path, kind: str, place: int
 ) -> None:
-    laid = blocks_of(tried["laid"][place])
+    laid = blocks_of(tried["laid"][0][place])
     np.savez(tmp_path / "laid.npz", ints=laid[0], floats=laid[1])
     said = run_exactly(("hopper", kind), tmp_path, f"from={tmp_path / 'laid.npz'}")["session"]
     start, driven = (blocks_of(some[place]) for some in tried["blocks"])

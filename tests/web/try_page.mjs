@@ -105,7 +105,7 @@ await page.click('a[href*="/hopper.html"]');
 where = "hopper";
 await page.waitForSelector("html[data-ready]");
 const ready = await page.evaluate(() => Number(document.documentElement.dataset.ready));
-const laid = await page.evaluate(`window.sandboxLive.blocks().map(([ints, floats]) => (${written})(ints, floats))`);
+const laid = await page.evaluate(`LIVE.seeds.map((_, seed) => window.sandboxLive.blocks(seed).map(([ints, floats]) => (${written})(ints, floats)))`);
 await settled();
 const first = await hashes();
 await drag(0, -10); // down, and keep it there
@@ -161,6 +161,21 @@ await page.evaluate(() => (window.sandboxLive.conductor.most = Infinity));
 
 // -- every other page, in short --
 
+const rows = () => look('(pane) => pane.count("rows")');
+
+// While the page is paused and its script is to run, and after it has gone on.
+async function holding() {
+  await page.keyboard.press("Space");
+  await page.evaluate(() => (window.sandboxLive.conductor.most = Infinity));
+  await page.click("#script");
+  await page.waitForTimeout(300);
+  const still = await rows();
+  await page.evaluate(() => (window.sandboxLive.conductor.most = window.sandboxLive.conductor.turns));
+  await page.click("#pause");
+  await turns(2);
+  return [still, await rows()];
+}
+
 async function tried(name) {
   where = name;
   await page.goto(address(`${name}.html`));
@@ -178,10 +193,14 @@ async function tried(name) {
   await turns(6);
   await page.mouse.up();
   await turns(1);
-  const pulled = await stand();
+  const [pulled, far] = [await stand(), await hashes()];
   await page.keyboard.press("z");
   await turns(1);
   const back = await hashes();
+  await page.keyboard.press("Shift+Z");
+  await turns(1);
+  const redone = await hashes();
+  const paused = await holding();
   const ratio = (await page.$("#slider-poisson_ratio")) ? "poisson_ratio" : "regular_poisson_ratio";
   await set(ratio, -4);
   await turns(3);
@@ -199,7 +218,7 @@ async function tried(name) {
     await turns(2); // it is loaded, and relaxed
     shares = await look("(pane) => pane.seen.grains.nu.filter((ratio) => ratio < 0).length / pane.seen.label.length");
   }
-  return { start, played, pulled, before, back, softer, end, shares };
+  return { start, played, pulled, before, far, back, redone, paused, softer, end, shares };
 }
 
 const others = {};
@@ -248,6 +267,9 @@ async function clumsy() {
   await settled();
   await page.waitForTimeout(1500);
   const aloud = await page.textContent("#live");
+  await page.keyboard.press("l");
+  const inGerman = await page.textContent("#live");
+  for (let other = await page.evaluate(() => document.documentElement.lang); other !== "en"; other = await page.evaluate(() => document.documentElement.lang)) await page.keyboard.press("l");
   // Faster than increments: the curve stays that of the state.
   await page.evaluate(() => {
     for (const key of "zrz") document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
@@ -268,7 +290,31 @@ async function clumsy() {
   await page.emulateMedia({ forcedColors: "none", media: "print" });
   const printed = await look("(pane) => pane.canvas.clientHeight");
   await page.emulateMedia({ media: "screen" });
-  return { byOther, keptHold, after, aloud, curves, friction, focus, lamps, printed };
+  return { byOther, keptHold, after, aloud, inGerman, curves, friction, focus, lamps, printed };
+}
+
+async function seeds() {
+  where = "hopper, seeds";
+  const begun = [];
+  const seed = () => page.evaluate(() => window.sandboxLive.state.seed);
+  for (const search of ["", "?seed=2", "?seed=77"]) {
+    await page.goto(address("hopper.html") + search);
+    await page.waitForSelector("html[data-ready]");
+    begun.push([await page.$eval("#seed", (list) => list.selectedOptions[0].textContent), await seed()]);
+  }
+  await settled();
+  const offered = await page.$$eval("#seed option", (options) => options.map((option) => option.textContent));
+  const named = await page.evaluate(() => document.querySelector("#seed").labels[0].innerText.split("\n")[0]);
+  await page.keyboard.press("Space");
+  await page.selectOption("#seed", { label: "2" });
+  const chosen = [await seed()];
+  await page.waitForFunction(() => window.sandboxLive.panes.every((pane) => pane.seen));
+  await page.click("#script");
+  await page.waitForTimeout(300);
+  const start = await rows();
+  await page.keyboard.press("n");
+  chosen.push(await seed());
+  return { begun, offered, named, chosen, start };
 }
 
 async function without() {
@@ -313,10 +359,11 @@ async function fingers() {
   return { pulled, scrolled };
 }
 
+const chances = await seeds();
 const hands = { ...(await clumsy()), ...(await without()), ...(await fingers()) };
 await browser.close();
 console.log(JSON.stringify({
   ...{ ready, faults, rate, dragged, told, trust, errors, events, slow, softer, memory: again.map(({ memory }) => memory), others, hands },
-  ...{ first, again: again.map(hash), laid },
+  ...{ first, again: again.map(hash), laid, seeds: chances },
   blocks: [again, driven].map((some) => some.map(({ ints, floats }) => ({ ints, floats }))),
 }));

@@ -2,29 +2,29 @@
 
 import { $, element, setText } from "./panes";
 import { ARROWS, pullBy } from "./hand";
-import { begin, canUndo, commandOf, keep, letGo, reset, switchScript, undo } from "./run";
+import { begin, canRedo, canUndo, commandOf, keep, letGo, redo, reset, switchScript, undo } from "./run";
 import { held, panes, state, the, values, view } from "./stage";
 import type { Slider } from "./live";
 
 export function showButtons() {
   $("script").setAttribute("aria-pressed", String(state.script));
   $("chains").setAttribute("aria-pressed", String(state.chains));
-  $("undo").setAttribute("aria-disabled", String(!canUndo())); // it keeps the focus
+  for (const [id, can] of Object.entries({ undo: canUndo(), redo: canRedo() })) $(id).setAttribute("aria-disabled", String(!can)); // they keep the focus
+  setText($("pause"), word(the.conductor?.paused ? "play" : "pause"));
 }
 
 export function speak() {
   settle(LIVE.languages[language], state.theme);
   document.title = say(LIVE.title);
-  const texts = { title: say(LIVE.title), question: say(LIVE.question), about: say(LIVE.about), reset: word("reset"), undo: word("undo") };
-  Object.assign(texts, { script: word("drive"), chains: word("chains"), "seed-label": word("new"), "view-label": word("view") });
+  const texts = { title: say(LIVE.title), question: say(LIVE.question), about: say(LIVE.about), reset: word("reset"), undo: word("undo"), redo: word("redo") };
+  Object.assign(texts, { script: word("drive"), chains: word("chains"), "seed-label": word("panel_seed"), "view-label": word("view") });
   Object.assign(texts, { theme: word(state.theme === "dark" ? "to_light" : "to_dark"), "events-title": word("events"), "keys-title": word("keys"), "letters-label": word("letters") });
   for (const [id, text] of Object.entries(texts)) setText($(id), text);
   const other = (language + 1) % LIVE.languages.length;
   setText($("language"), run.words[other].name);
   $("language").lang = LIVE.languages[other];
-  $("seed").setAttribute("aria-label", word("new"));
   $<HTMLSelectElement>("view").replaceChildren(...LIVE.views.map((each, k) => option(say(each.title), k, state.view)));
-  $<HTMLSelectElement>("seed").replaceChildren(...LIVE.seeds.map((seed, k) => option(word("seed", { seed }), k, state.seed)));
+  $<HTMLSelectElement>("seed").replaceChildren(...LIVE.seeds.map((seed, k) => option(String(seed), k, state.seed)));
   $("choices").setAttribute("aria-label", word("choices"));
   $("stage").setAttribute("aria-label", word("stage"));
   $("plot").setAttribute("aria-label", `${say(run.labels.force)}, ${say(run.labels.stroke)}`);
@@ -34,6 +34,7 @@ export function speak() {
   showButtons();
   showEvents();
   for (const pane of panes) pane.tell();
+  setText($("live"), the.aloud());
   if (the.plot) the.plot.key = "";
   the.dirty = true;
 }
@@ -165,18 +166,28 @@ function showKeys() {
   if (part.open) $("keys-title").focus();
 }
 
-// What is set is shown anew, with the sliders.
-function back() {
-  undo();
+// Go to another state by `go`; what is set is shown anew, with the sliders.
+function restored(go: () => void) {
+  go();
   setting = "";
   limits();
   for (const show of lines) show();
 }
 
+function pause() {
+  const { conductor } = the;
+  conductor.paused = !conductor.paused;
+  for (const pane of panes) pane.tell();
+  the.aloud = () => (conductor.paused ? word("paused") : "");
+  setText($("live"), the.aloud());
+}
+
 const LETTERS: Record<string, () => void> = {
   r: reset,
   a: switchScript,
-  z: back,
+  z: () => restored(undo),
+  Z: () => restored(redo),
+  " ": pause,
   n: () => chooseSeed((state.seed + 1) % LIVE.seeds.length),
   f: () => ((state.chains = !state.chains), (the.dirty = true)),
   t: () => ((state.theme = state.theme === "dark" ? "light" : "dark"), speak()),
@@ -186,14 +197,18 @@ const LETTERS: Record<string, () => void> = {
   "?": showKeys,
 };
 const KEYS: Record<string, () => void> = { F1: showKeys, Escape: letGo };
+const WITH_CTRL: Record<string, () => void> = { z: LETTERS.z, Z: LETTERS.Z, y: LETTERS.Z };
 
 export function listen() {
   document.addEventListener("keydown", (event) => {
     const on = (kinds: string) => (event.target as HTMLElement).matches(kinds);
-    if (event.ctrlKey || event.metaKey || event.altKey || on("select")) return;
-    const arrow = on("input[type=range], .told p") ? undefined : ARROWS[event.key];
-    const letter = $<HTMLInputElement>("letters").checked && !event.repeat ? LETTERS[signOf(event).toLowerCase()] : undefined;
-    const act = arrow ? () => pullBy(arrow, event.shiftKey) : (KEYS[event.key] ?? letter);
+    const sign = signOf(event);
+    if (event.altKey || on("select") || (sign === " " && on("a, button, summary, input[type=checkbox], .told p"))) return;
+    const ctrl = event.ctrlKey || event.metaKey;
+    const arrow = ctrl || on("input[type=range], .told p") ? undefined : ARROWS[event.key];
+    const letters = ctrl ? WITH_CTRL : $<HTMLInputElement>("letters").checked && !event.repeat ? LETTERS : {};
+    const letter = letters[sign] ?? letters[sign.toLowerCase()];
+    const act = arrow ? () => pullBy(arrow, event.shiftKey) : ((ctrl ? undefined : KEYS[event.key]) ?? letter);
     if (!act) return;
     event.preventDefault();
     act();
@@ -203,7 +218,7 @@ export function listen() {
     if (ARROWS[event.key] && held.by === "keys") letGo();
   });
   window.addEventListener("blur", letGo);
-  const buttons = { reset, script: switchScript, undo: back, chains: LETTERS.f, theme: LETTERS.t, language: LETTERS.l };
+  const buttons = { reset, pause, script: switchScript, undo: LETTERS.z, redo: LETTERS.Z, chains: LETTERS.f, theme: LETTERS.t, language: LETTERS.l };
   for (const [id, act] of Object.entries(buttons)) {
     $(id).addEventListener("click", () => {
       act();

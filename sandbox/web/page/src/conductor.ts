@@ -13,10 +13,12 @@ export class Conductor {
   private dumps: ((dump: Extract<FromWorker, { kind: "dump" }>) => void)[] = [];
   busy = true;
   idle = false;
+  paused = false;
   turns = 0;
   most = Infinity; // turns after which it waits, for tests
   spent = 0; // [ms] in kernels, all workers together
   private since = 0;
+  private fresh = true; // has no increment been made of these packings yet?
   private broken = false;
   private readonly address = URL.createObjectURL(new Blob([WORKER], { type: "text/javascript" }));
 
@@ -31,6 +33,7 @@ export class Conductor {
     for (const worker of this.workers) worker.terminate();
     this.waiting = settings;
     this.broken = false;
+    this.fresh = true;
     this.begun();
     this.answers = blocks.length;
     this.workers = blocks.map(([ints, floats], pane) => {
@@ -56,6 +59,11 @@ export class Conductor {
     return this.waiting.length > 0;
   }
 
+  // Is there a command that takes effect while paused, too? What the hand does is not.
+  private get unpausable(): boolean {
+    return this.waiting.some(([name]) => name !== "command" && name !== "keep");
+  }
+
   // How long the present increment has taken so far [ms].
   get waited(): number {
     return this.busy && !this.broken ? performance.now() - this.since : 0;
@@ -68,7 +76,8 @@ export class Conductor {
 
   // The next increment, once all are done with this one.
   turn() {
-    if (this.busy || this.idle || this.turns >= this.most) return;
+    if (this.busy || this.idle || this.turns >= this.most || (this.paused && !this.fresh && !this.unpausable)) return;
+    this.fresh = false;
     this.given = this.waiting.splice(0, this.atOnce());
     const message: ToWorker = { kind: "turn", commands: this.given };
     this.begun();
@@ -87,7 +96,7 @@ export class Conductor {
   private atOnce(): number {
     const { move, release } = this.live.commands;
     const at = (kind: number) => this.waiting.findIndex(([name, first]) => name === "command" && first === kind);
-    return at(move) >= 0 && at(move) < at(release) ? at(release) : this.waiting.length;
+    return !this.paused && at(move) >= 0 && at(move) < at(release) ? at(release) : this.waiting.length;
   }
 
   private begun() {

@@ -34,6 +34,13 @@ export interface Packing {
   bodies: { role: string; discs: number[]; segments: number[]; polygons: number[][] }[]; // as seen from the body
 }
 
+// How packings are to be unfolded: see `packings.ts`.
+export interface Packed {
+  steps: number; // of the grid in a radius
+  lengths: [ints: number, floats: number][]; // bytes of the blocks, by packing
+  differing: [block: number, begin: number, count: number][][]; // numbers that differ from seed to seed, by packing
+}
+
 export interface Live {
   scene: string;
   languages: string[];
@@ -59,6 +66,6 @@ export interface Live {
   events: string[]; // kinds
   machine: number; // a hand without bound [k R]
   lockedAfter: number;
-  lengths: [ints: number, floats: number][][]; // bytes of the blocks, by seed and packing
+  packed: Packed;
   start: { theme: string; auto: boolean };
 }

@@ -16,16 +16,17 @@ let said = 0;
 let begun = 0;
 let later = 0;
 
-function sayAloud(sentences: string[]) {
+function sayAloud(...sentences: (() => string)[]) {
   said = performance.now();
-  setText($("live"), sentences.join(". "));
+  the.aloud = () => sentences.map((sentence) => sentence()).join(". ");
+  setText($("live"), the.aloud());
 }
 
 // How things stand, as soon as what was said last has been heard.
 function standing() {
   if (the.conductor.busy) return; // with something newer
   for (const pane of panes) pane.tell();
-  sayAloud(panes.map((pane) => pane.standing()));
+  sayAloud(...panes.map((pane) => () => pane.standing()));
 }
 
 // Increments do not wait for pictures: where a computer draws slowly, some are not seen.
@@ -44,7 +45,7 @@ function finished() {
   if (news.length || panes.some((pane) => pane.went)) showEvents();
   for (const pane of panes) pane.went = false;
   clearTimeout(later);
-  if (news.length) sayAloud(news);
+  if (news.length) sayAloud(...news);
   else if (the.conductor.idle) later = setTimeout(standing, Math.max(said + QUIET - performance.now(), 0));
 }
 
@@ -60,6 +61,7 @@ async function begin() {
   }) as unknown as PlayerRun;
   language = languageAsked(LIVE.start.auto, LIVE.languages, document.documentElement.lang);
   state.theme = themeAsked(LIVE.start.auto, LIVE.start.theme);
+  state.seed = Math.max(LIVE.seeds.indexOf(Number(inAddress.get("seed"))), 0);
   LIVE.packings.forEach((_, index) => panes.push(new Pane(LIVE, index)));
   run.panes = panes.map((pane) => pane.shown);
   the.plot = new Plot($<HTMLCanvasElement>("plot"), () => undefined);
@@ -79,8 +81,8 @@ async function begin() {
 }
 
 // For tests and for who is curious.
-const { hand, reset, undo, blocks } = runs;
-Object.assign(window, { sandboxLive: { state, held, panes, pictures, get conductor() { return the.conductor; }, hand, reset, undo, blocks } });
+const { hand, reset, undo, redo, blocks } = runs;
+Object.assign(window, { sandboxLive: { state, held, panes, pictures, get conductor() { return the.conductor; }, hand, reset, undo, redo, blocks } });
 begin().catch((error) => {
   console.error(error);
   document.documentElement.dataset.trouble = "";

@@ -43,6 +43,7 @@ export class Pane {
   private unheard: PlayerEvent[] = [];
   private lags = false;
   private marks: PlayerTrack[] = []; // what the curve was at the states that the worker keeps
+  private undone: PlayerTrack[] = [];
   went = true; // has it gone back?
   private room = 0; // for what is said of the lamp [px]
 
@@ -82,7 +83,7 @@ export class Pane {
 
   // Before the first increment of a packing.
   begin() {
-    Object.assign(this, { seen: null, sentences: [], unheard: [], marks: [] });
+    Object.assign(this, { seen: null, sentences: [], unheard: [], marks: [], undone: [] });
     this.clear();
   }
 
@@ -93,13 +94,19 @@ export class Pane {
 
   // The curve goes the way of the worker's state, which has obeyed these commands.
   obey(commands: Command[]) {
-    const { shown, marks } = this;
+    const { shown, marks, undone } = this;
+    const track = () => ({ stroke: [...shown.stroke], force: [...shown.force], events: [...shown.events] });
     for (const [name] of commands) {
-      if (name === "keep") marks.push({ stroke: [...shown.stroke], force: [...shown.force], events: [...shown.events] });
-      if (marks.length > MARKS) marks.shift();
+      if (name === "keep") {
+        marks.push(track());
+        if (marks.length > MARKS) marks.shift();
+        undone.length = 0;
+      }
       if (name === "reset") this.clear();
-      if (name !== "undo") continue;
-      Object.assign(shown, marks.pop());
+      if (name !== "undo" && name !== "redo") continue;
+      const [from, to] = name === "undo" ? [marks, undone] : [undone, marks];
+      to.push(track());
+      Object.assign(shown, from.pop());
       this.went = true;
     }
   }
@@ -140,8 +147,8 @@ export class Pane {
   }
 
   // What has begun since somebody has asked, for who does not see it.
-  news(): string[] {
-    const said = this.unheard.map((event) => `${this.title}: ${event.text()}`);
+  news(): (() => string)[] {
+    const said = this.unheard.map((event) => () => `${this.title}: ${event.text()}`);
     this.unheard = [];
     return said;
   }
@@ -197,8 +204,10 @@ export class Pane {
     setText(this.value, this.valuesSaid().join(" · "));
     const settling = word("settling");
     const { level, words, short } = this.seen && !this.lags ? lamp(this) : { level: 1, words: settling, short: settling };
-    setText(this.said, words.length * LETTER < this.room ? words : short);
-    this.said.title = words;
+    const paused = the.conductor?.paused ? word("paused") : "";
+    const [long, brief] = [words, short].map((said) => [paused, said].filter(Boolean).join(" · "));
+    setText(this.said, long.length * LETTER < this.room ? long : brief);
+    this.said.title = long;
     this.lamp.className = `lamp ${["good", "working", "bad"][level]}`;
     const notices = this.notices();
     if (this.told.dataset.notices !== notices + this.title) {

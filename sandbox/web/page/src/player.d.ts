@@ -105,6 +105,7 @@ interface PlayerRun {
   [name: string]: unknown;
 }
 
+declare const inAddress: URLSearchParams;
 declare let run: PlayerRun;
 declare let language: number;
 

@@ -1,32 +1,23 @@
 // The run: packings to begin with, what is set, where one can go back to, the script.
 
 import { $, setText } from "./panes";
+import { packing, spread } from "./packings";
 import { MARKS, type Command } from "./shared";
 import { held, panes, state, the, values } from "./stage";
 
 let program: WebAssembly.Module;
-let packings: BigUint64Array[][][]; // by seed and packing: whole numbers, and others
-const marks: { values: [string, number][]; script: boolean; held: boolean }[] = [];
+interface Mark {
+  values: [string, number][];
+  script: boolean;
+  held: boolean;
+}
+const marks: Mark[] = [];
+const undone: Mark[] = [];
 
 export async function load() {
   const [kernels, all] = await Promise.all([unpacked("kernels"), unpacked("packings")]);
+  spread(all);
   program = await WebAssembly.compile(kernels);
-  let at = 0;
-  let first: BigUint64Array[] = [];
-  packings = LIVE.lengths.map((some) =>
-    some.map((lengths) => {
-      const both = lengths.map((length) => {
-        at += length;
-        return new BigUint64Array(all, at - length, length / 8);
-      });
-      first = first.length ? first : both;
-      both.forEach((block, k) => {
-        // What is as in the first packing is 0.
-        if (block !== first[k] && block.length === first[k].length) first[k].forEach((value, place) => (block[place] ^= value));
-      });
-      return both;
-    }),
-  );
 }
 
 async function unpacked(id: string): Promise<ArrayBuffer> {
@@ -36,10 +27,8 @@ async function unpacked(id: string): Promise<ArrayBuffer> {
 }
 
 // The blocks of the packings that are chosen, to be handed out.
-export function blocks(): ArrayBuffer[][] {
-  const all = packings[state.seed];
-  const chosen = LIVE.packings.map((_, k) => all[k === LIVE.share?.packing ? LIVE.share.places[state.share] : k]);
-  return chosen.map((both) => both.map((block) => block.slice().buffer));
+export function blocks(seed = state.seed): ArrayBuffer[][] {
+  return LIVE.packings.map((_, k) => packing(seed, k === LIVE.share?.packing ? LIVE.share.places[state.share] : k));
 }
 
 // A slider's entry of the kernels with its values: numbers as they are, and what sliders are set to.
@@ -70,23 +59,30 @@ export function letGo() {
   hand("release");
 }
 
+const mark = (): Mark => ({ values: [...values], script: state.script, held: held.by !== null });
+
 // A place to come back to, for hand, script and settings alike.
 export function keep() {
-  marks.push({ values: [...values], script: state.script, held: held.by !== null });
+  marks.push(mark());
   if (marks.length > MARKS) marks.shift();
+  undone.length = 0;
   the.conductor.ask(["keep"]);
 }
 
 export const canUndo = () => marks.length > 0;
+export const canRedo = () => undone.length > 0;
+export const undo = () => goTo("undo", marks, undone);
+export const redo = () => goTo("redo", undone, marks);
 
-export function undo() {
+function goTo(command: string, from: Mark[], to: Mark[]) {
   letGo();
-  const mark = marks.pop();
-  if (!mark) return;
-  for (const [name, value] of mark.values) values.set(name, value);
-  state.script = mark.script;
-  the.conductor.ask(["undo"]);
-  if (mark.held) hand("release"); // nobody holds the handle now
+  const there = from.pop();
+  if (!there) return;
+  to.push(mark());
+  for (const [name, value] of there.values) values.set(name, value);
+  state.script = there.script;
+  the.conductor.ask([command]);
+  if (there.held) hand("release"); // nobody holds the handle now
 }
 
 export function reset() {
@@ -100,9 +96,10 @@ export function reset() {
 // With the packings that are chosen, from their start.
 export function begin() {
   letGo();
-  marks.length = 0;
+  marks.length = undone.length = 0;
   state.script = false;
   for (const pane of panes) pane.begin();
+  the.aloud = () => "";
   setText($("live"), "");
   the.conductor.begin(program, blocks(), changed());
 }

@@ -11,7 +11,7 @@ export interface Layout {
   sentence: number; // numbers of one
 }
 
-// An entry of the kernels with its values; or "keep" the state as it is, "undo" what came since then, "reset" to the start.
+// An entry of the kernels with its values; or "keep" the state as it is, "undo" what came since then, "redo" that, "reset" to the start.
 export type Command = [name: string, ...values: number[]];
 
 export const MARKS = 20; // states that are kept

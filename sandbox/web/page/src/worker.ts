@@ -19,6 +19,7 @@ interface Kept {
 }
 let start: Kept;
 const marks: Kept[] = [];
+const undone: Kept[] = [];
 let back = false;
 
 const answer = (message: FromWorker, moved: Transferable[] = []) => postMessage(message, { transfer: moved });
@@ -50,6 +51,8 @@ function load(message: Extract<ToWorker, { kind: "load" }>) {
 
 const bytes = (at: number) => new Uint8Array(kernels.memory.buffer, at, 8 * (at === intsAt ? whole : others));
 
+const kept = (): Kept => ({ ints: bytes(intsAt).slice(), floats: bytes(floatsAt).slice() });
+
 function put(kept: Kept) {
   bytes(intsAt).set(kept.ints);
   bytes(floatsAt).set(kept.floats);
@@ -58,16 +61,19 @@ function put(kept: Kept) {
 function obey(command: Command) {
   const [name] = command;
   if (name === "keep") {
-    marks.push({ ints: bytes(intsAt).slice(), floats: bytes(floatsAt).slice() });
+    marks.push(kept());
     if (marks.length > MARKS) marks.shift();
-  } else if (name === "undo") {
-    put(marks.pop()!);
+    undone.length = 0;
+  } else if (name === "undo" || name === "redo") {
+    const [from, to] = name === "undo" ? [marks, undone] : [undone, marks];
+    to.push(kept());
+    put(from.pop()!);
   } else if (name === "reset") {
     put(start);
   } else {
     call(command);
   }
-  if (name === "undo" || name === "reset") back = name === "undo";
+  if (["undo", "redo", "reset"].includes(name)) back = name !== "reset";
 }
 
 function seen(): Seen {
