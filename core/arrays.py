@@ -14,5 +14,5 @@ def aligned_zeros(rows: int, columns: int) -> Floats:
     """Zeros (rows, columns) that begin with a cache line: eight numbers at a time then never cross from one into the next."""
     size = 8 * rows * columns
     room = np.zeros(size + CACHE_LINE, dtype=np.uint8)
-    start = -room.ctypes.data % CACHE_LINE
+    start = -room.__array_interface__["data"][0] % CACHE_LINE
     return room[start : start + size].view(np.float64).reshape(rows, columns)

@@ -50,7 +50,7 @@ class Friction:
 
     def copy(self) -> Friction:
         """An independent copy, equal to the last bit."""
-        twin = Friction(self.coefficient, 0)
+        twin = Friction.__new__(Friction)
         for name, value in vars(self).items():
             setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
         return twin

@@ -72,16 +72,15 @@ class FrictionForces:
         parts: tuple[Any, ...] = (*pulls.who, *pulls.values, pulls.sliding)
         return cls(*parts)
 
-    def beyond_cone(self, coefficient: float, pairs: GrainContacts, bodies: RigidContacts) -> float:
+    def beyond_cone(
+        self, coefficient: float, grains: int, pairs: GrainContacts, bodies: RigidContacts
+    ) -> float:
         """Share of these contacts that pull harder than ``BEYOND`` times μ times the normal force they have by another measure.
 
-        ``pairs`` and ``bodies``: all contacts of the packing as it stands. 0 where no contact pulls.
+        ``pairs`` and ``bodies``: all contacts of the packing of so many ``grains`` as it stands. 0 where no contact pulls.
         """
         if not len(self.i):
             return 0.0
-        highest = max(
-            int(v.max(initial=-1)) for v in (self.i, self.j, pairs.i, pairs.j, bodies.grain)
-        )
         beyond = count_beyond(
             BEYOND * coefficient,
             np.array([self.i, self.j, self.primitive]),
@@ -93,7 +92,7 @@ class FrictionForces:
             bodies.grain,
             bodies.primitive,
             bodies.normal_force,
-            np.empty(2 * (highest + 1), dtype=np.int64),
+            np.empty(2 * grains, dtype=np.int64),
             np.empty(len(pairs.i) + len(bodies.grain), dtype=np.int64),
         )
         return float(beyond) / len(self.i)
@@ -152,7 +151,7 @@ def before_lists(origin: Origin, primitives: Floats) -> FrictionalContacts:
         np.zeros((4, count)),
         np.zeros((2, count)),
         np.zeros((4, 0)),
-        aligned_zeros(8, 0),
+        np.zeros((8, 0)),
         aligned_zeros(count, 8),
         np.zeros((4, 0)),
         origin.turn,

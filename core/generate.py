@@ -188,12 +188,11 @@ def open_area(
 def inside(outline: list[Point], x: Floats, y: Floats) -> NDArray[np.bool_]:
     """True for points (n,) inside the closed outline (even–odd rule)."""
     corners = np.asarray(outline, dtype=np.float64)
-    result = np.zeros(np.shape(x), dtype=bool)
-    for (x0, y0), (x1, y1) in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        if y0 != y1:
-            crosses = (y0 > y) != (y1 > y)
-            result ^= crosses & (x < x0 + (y - y0) * (x1 - x0) / (y1 - y0))
-    return result
+    sides = np.hstack([corners, np.roll(corners, -1, axis=0)])
+    x0, y0, x1, y1 = sides[sides[:, 1] != sides[:, 3]].T[:, :, None]
+    left = x < x0 + (y - y0) * (x1 - x0) / (y1 - y0)
+    odd: NDArray[np.bool_] = np.logical_xor.reduce(((y0 > y) != (y1 > y)) & left, axis=0)
+    return odd
 
 
 def _place(

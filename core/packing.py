@@ -201,7 +201,10 @@ class Packing:
 
     def copy(self) -> Packing:
         """An independent copy, equal to the last bit."""
-        return self.select(np.ones(len(self), dtype=bool))
+        twin = Packing.__new__(Packing)
+        for name, value in vars(self).items():
+            setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
+        return twin
 
     def select(self, keep: NDArray[np.bool_]) -> Packing:
         """A new packing of the grains where ``keep`` (N,) is True; their labels stay."""

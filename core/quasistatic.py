@@ -31,6 +31,8 @@ from core.settings import LONGEST_STEP
 from core.system import System
 from core.tries import Tries
 
+Touching = tuple[observables.GrainContacts, observables.RigidContacts]  # who touches whom
+
 
 @dataclass(frozen=True)
 class Increment:
@@ -60,13 +62,12 @@ class Quasistatic:
         packing, world = system.packing, system.world
         self.reactions = np.zeros((len(world.bodies), 3))
         self.latest: Increment | None = None  # as it ended
-        self._contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None = None
+        self._contacts: Touching | None = None  # between two increments, once somebody has asked
         self._relaxation: Relaxation | None = None
         self._start: Floats = packing.state.copy()
         self._start_box = packing.box
         self._placement: Floats = world.placement()
-        # Grains deep in a body when the relaxation began (N,), and those that were moved through a face (N, M), see ``passage``.
-        self._deep = np.zeros(0, dtype=np.bool_)
+        # Grains that were moved through a face (N, M), see ``passage``.
         self._through = np.zeros((0, 0), dtype=np.bool_)
         self._last: Floats = np.zeros_like(packing.state)  # displacement in the increment before
         self._carried: Floats = packing.state[:2].copy()  # centres, moved with the periodic cell
@@ -121,15 +122,14 @@ class Quasistatic:
         self._last_moved = dict(state.last_moved)
         system.friction = None if state.friction is None else state.friction.copy()
         system.solver, system.gravity, system.drag = state.solver, state.gravity, state.drag
-        self._relaxation = None
-        self._contacts = self.contacts()
+        self._relaxation = self._contacts = None
 
     def look_again(self) -> None:
         """What the system has, or what its packing is made of, was changed. Raises InputError for what cannot go on so."""
         if self._relaxation is not None:
             raise RuntimeError("nothing can be changed in the middle of an increment")
         self._check()
-        self._contacts = self.contacts()
+        self._contacts = None
 
     def _check(self) -> None:
         _check_step(self.system.solver.step, self.packing)
@@ -144,24 +144,20 @@ class Quasistatic:
         if self._relaxation is not None:
             raise RuntimeError("the increment before is not finished")
         self._tries = Tries(self.system, targets, box)
-        state, cell, placement = self.packing.state.copy(), self.packing.box, self.world.placement()
+        self._placement = self.world.placement()
+        state, cell = self.packing.state.copy(), self.packing.box
         try:
             self._begin()
         except InputError:
             self.packing.state[:], self.packing.box = state, cell
-            self.world.place(placement)
+            self.world.place(self._placement)
+            self._contacts = None
             raise
 
     def _begin(self) -> None:
-        if self.system.relaxes and part_coincident(
-            self.packing, (self._contacts or self.contacts())[0]
-        ):
+        if self.system.relaxes and part_coincident(self.packing, self.contacts()[0]):
             self._contacts = None
-        if self.system.relaxes:
-            # Before anything moves: a prediction that flattens a grain would make it look deep already.
-            touched = (self._contacts or self.contacts())[1]
-            self._deep = self._deep_in(touched)
-        self._placement = self.world.placement()
+        touched = self.contacts()[1]
         rows_then, owner = self.world.primitives()
         rows_then = endless(rows_then, self.packing.box)
         self._tries.move_bodies(self.reactions)
@@ -214,82 +210,80 @@ class Quasistatic:
             report = replace(report, reason=StopReason.CONVERGED, residual=0.0)
         if report.reason is StopReason.BUDGET:
             return None
-        contacts = None
         unbalanced = np.zeros(len(self.packing))
         held = None if self.friction is None else (*relaxation.slips(), relaxation.turned())
-        relaxed = self.system.relaxes and report.reason not in FAILED
+        good = report.reason not in FAILED
+        relaxed = good and self.system.relaxes
         if relaxed:
             relaxation.write_back()
             unbalanced = np.hypot(*relaxation.forces()[:2])
             self._through ^= relaxation.gone_through()
         self._relaxation = relaxation = None  # its arrays make room for those of the contacts
-        if relaxed:
-            contacts = self.contacts()
-            deep = self._deep_in(contacts[1])
-            if self._through.any() or np.any(deep & ~self._deep):
-                report = replace(report, reason=StopReason.SUNK)
-        good = report.reason not in FAILED
+        contacts = self._touching() if good else self.contacts()
+        if relaxed and (self._through.any() or self._sunk(contacts[1])):
+            report, good = replace(report, reason=StopReason.SUNK), False
         remembered = self._remembered()
         forces = None
         if good and self.friction is not None and held is not None:
             keys, slips, forces, turned = held
             self.friction.end(keys, slips, turned)
-        if self._tries.limited and self._tries_again(contacts if good else None, forces):
-            self._tries.spent += report.iterations
-            self._take_back()
-            self.system.friction = remembered
-            self._begin()
-            return None
-        report = replace(report, iterations=self._tries.spent + report.iterations)
-        if good and contacts and self._tries.limited and self._creeps(contacts, forces):
-            # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
-            self._take_back()
-            self.system.friction = remembered
-            return self._stand_still(report.iterations)
+        reactions = self._measure(contacts[1], forces) if good else self.reactions
+        spent = self._tries.spent + report.iterations
+        if self._tries.limited:
+            force = self._hand_force(contacts[0], reactions) if good else math.inf
+            if self._tries_again(force):
+                self._tries.spent = spent
+                self._take_back()
+                self.system.friction = remembered
+                self._begin()
+                return None
+            if good and self._creeps(force):
+                # At rest the force is right to the tolerance only, and friction creeps: what was within the strength stays.
+                self._take_back()
+                self.system.friction = remembered
+                return self._stand_still(spent)
+            report = replace(report, iterations=spent)
         if not good:
             # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
             self._take_back()
-            contacts = None
+            contacts = self.contacts()
             unbalanced[:] = 0.0
+            reactions = self._measure(contacts[1], None)
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._tries.moved
-        self._contacts = pairs, bodies = contacts or self.contacts()
-        self.reactions = self._measure(bodies, forces)
+        self._contacts, self.reactions = contacts, reactions
         beyond = 0.0
         if forces is not None and self.friction is not None:
-            beyond = forces.beyond_cone(self.friction.coefficient, pairs, bodies)
+            beyond = forces.beyond_cone(self.friction.coefficient, len(self.packing), *contacts)
         return self._observe(report, unbalanced, forces, beyond)
 
-    def _deep_in(self, bodies: observables.RigidContacts) -> NDArray[np.bool_]:
-        """The grains (N,) that are deep in a body."""
+    def _sunk(self, bodies: observables.RigidContacts) -> bool:
+        """True if grains have come deep into a body that were not when the increment began."""
         step = self.system.solver.step
-        return deep_grains(self.packing.state, bodies.grain, bodies.overlap, step)
+        deep = deep_grains(self.packing.state, bodies.grain, bodies.overlap, step)
+        if not deep.any():
+            return False
+        # As they stood before anything moved: a prediction that flattens a grain would make it look deep already.
+        before = self.contacts()[1]
+        return bool(np.any(deep & ~deep_grains(self._start, before.grain, before.overlap, step)))
 
     def _remembered(self) -> Friction | None:
         """What frictional contacts remember, where the increment may have to be done again."""
         return None if self.friction is None or not self._tries.limited else self.friction.copy()
 
-    def _tries_again(
-        self,
-        contacts: tuple[observables.GrainContacts, observables.RigidContacts] | None,
-        friction: FrictionForces | None,
-    ) -> bool:
-        """After a try, ``contacts`` None if it led to nothing: has the hand overpowered itself? Then a shorter way is set."""
-        force = math.inf if contacts is None else self._force_after(contacts, friction)
-        before = self._hand_force((self._contacts or self.contacts())[0], self.reactions)
+    def _tries_again(self, force: float) -> bool:
+        """After a try that took that force [k R], inf if it led to nothing: has the hand overpowered itself? Then a shorter way
+        is set.
+        """
+        before = self._hand_force(self.contacts()[0], self.reactions)
         return self._tries.again(force, before, squeezed=self.packing.box != self._start_box)
 
-    def _creeps(
-        self,
-        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
-        friction: FrictionForces | None,
-    ) -> bool:
-        """True if nothing was moved, and the force has come above the strength of the hand all the same."""
+    def _creeps(self, force: float) -> bool:
+        """True if nothing was moved, and the force [k R] has come above the strength of the hand all the same."""
         # With drag grains go on where no body moves.
-        if self._tries.share > 0.0 or self.system.drag > 0.0:
-            return False
-        return self._tries.too_much(self._force_after(contacts, friction))
+        still = self._tries.share == 0.0 and self.system.drag == 0.0
+        return still and self._tries.too_much(force)
 
     def _stand_still(self, spent: int) -> Increment:
         """An increment in which nothing has changed, after ``spent`` force evaluations: one more tells how well it is relaxed."""
@@ -306,16 +300,7 @@ class Quasistatic:
         self._last = np.zeros_like(self.packing.state)
         self._own_motion = np.zeros_like(self.packing.state[:2])
         self._last_moved = tries.moved
-        self._contacts = self.contacts()
         return self._observe(replace(report, iterations=spent + report.iterations), unbalanced)
-
-    def _force_after(
-        self,
-        contacts: tuple[observables.GrainContacts, observables.RigidContacts],
-        friction: FrictionForces | None,
-    ) -> float:
-        """The hand's force after a try [k R]."""
-        return self._hand_force(contacts[0], self._measure(contacts[1], friction))
 
     def _hand_force(self, pairs: observables.GrainContacts, reactions: Floats) -> float:
         return self._tries.hand_force(pairs, reactions, self._start_box)
@@ -326,8 +311,15 @@ class Quasistatic:
         self.packing.box = self._start_box
         self.world.place(self._placement)
 
-    def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
+    def contacts(self) -> Touching:
         """All contacts as things stand now."""
+        if self._relaxation is not None:
+            return self._touching()
+        if self._contacts is None:
+            self._contacts = self._touching()
+        return self._contacts
+
+    def _touching(self) -> Touching:
         return observables.grain_contacts(self.packing), observables.body_contacts(
             self.packing, self.world.primitives()[0]
         )
@@ -356,7 +348,7 @@ class Quasistatic:
         self.system.packing = self.packing.select(~gone)
         self._last = np.ascontiguousarray(self._last[:, ~gone])
         self._own_motion = np.ascontiguousarray(self._own_motion[:, ~gone])
-        self._contacts = self.contacts()
+        self._contacts = None
         if self.friction is not None:
             self.friction.select(~gone)
 
@@ -369,9 +361,8 @@ class Quasistatic:
         self._last = np.zeros_like(packing.state)
         self._own_motion = np.zeros_like(packing.state[:2])
         self._last_moved = {}
-        _, owner = self.world.primitives()
-        self._contacts = self.contacts()
-        self.reactions = observables.reactions(self._contacts[1], owner, self._placement)
+        self._contacts = None
+        self.reactions = self._measure(self.contacts()[1], None)
 
     def _squeeze(self, new: PeriodicBox | None) -> None:
         """Change the periodic box to ``new``, and the grains' places with it: all images of a grain go to those of one place."""
@@ -401,7 +392,7 @@ class Quasistatic:
         )
         if along <= 0.0:
             return
-        pairs, bodies = self._contacts or self.contacts()
+        pairs, bodies = self.contacts()
         held = np.zeros(len(self.packing))
         for grains in (pairs.i, pairs.j, bodies.grain):
             held[grains] = 1.0
@@ -424,8 +415,7 @@ class Quasistatic:
         beyond_cone: float = 0.0,
     ) -> Increment:
         """The increment that has ended so, with contacts and reactions as they are now."""
-        assert self._contacts is not None
-        pairs, bodies = self._contacts
+        pairs, bodies = self.contacts()
         self.latest = Increment(
             moved=self._tries.moved,
             pulled=self._tries.pulled,

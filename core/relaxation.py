@@ -134,6 +134,8 @@ class Relaxation:
     def _run(self, max_iterations: int) -> None:
         left = min(max_iterations, self.max_iterations - self.iterations)
         while self._reason is StopReason.BUDGET and left > 0:
+            if not self._listed:
+                self._relist()
             code, used = fire.run(
                 self._minimizer,
                 self._box,

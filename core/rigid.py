@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from operator import is_
 from typing import Literal
 
 import numpy as np
@@ -97,10 +98,11 @@ class RigidBody:
         return rows
 
     def _rows(self) -> Floats:
+        discs = np.array(self.discs, dtype=np.float64).reshape(-1, 3)
+        round_ones = np.zeros((len(discs), COLUMNS))
+        round_ones[:, 0], round_ones[:, 1:3] = DISC, self.to_world(discs[:, :2])
+        round_ones[:, 7] = discs[:, 2]
         rows: list[list[float]] = []
-        for x, y, radius in self.discs:
-            cx, cy = self.to_world([(x, y)])[0]
-            rows.append([DISC, cx, cy, 0.0, 0.0, 0.0, 0.0, radius])
         edges: list[tuple[Point, Point, float]] = []
         for x0, y0, x1, y1, radius in self.segments:
             a, b = self.to_world([(x0, y0), (x1, y1)])
@@ -111,7 +113,7 @@ class RigidBody:
             rows += _edges_and_vertices(
                 [(p[k], p[(k + 1) % len(p)], radius) for k in range(len(p))]
             )
-        return np.array(rows, dtype=np.float64).reshape(-1, COLUMNS)
+        return np.concatenate([round_ones, np.array(rows).reshape(-1, COLUMNS)])
 
     def area(self) -> float:
         """Area of discs and polygons, thickness included [R²]; thin segments count as nothing."""
@@ -131,18 +133,19 @@ class RigidWorld:
         self.bodies = list(bodies)
         if len({body.name for body in self.bodies}) != len(self.bodies):
             raise InputError("rigid bodies must have different names")
+        self._made: tuple[list[Floats], Floats, NDArray[np.int64]] | None = None
 
     def __getitem__(self, name: str) -> RigidBody:
-        for body in self.bodies:
-            if body.name == name:
-                return body
-        raise InputError(
-            f"no rigid body is called {name!r}; there are: {', '.join(b.name for b in self.bodies)}"
-        )
+        return self.bodies[self.index(name)]
 
     def index(self, name: str) -> int:
         """Place of a body in ``bodies`` and in arrays of reactions."""
-        return self.bodies.index(self[name])
+        for place, body in enumerate(self.bodies):
+            if body.name == name:
+                return place
+        raise InputError(
+            f"no rigid body is called {name!r}; there are: {', '.join(b.name for b in self.bodies)}"
+        )
 
     def remove(self, name: str) -> None:
         """Take a body away."""
@@ -158,10 +161,14 @@ class RigidWorld:
         self.bodies = [*(body for body in self.bodies if not body.drawn), *walls]
 
     def primitives(self) -> tuple[Floats, NDArray[np.int64]]:
-        """All primitives (M, 8) and the index of the body that each belongs to (M,)."""
-        rows = [body.primitives() for body in self.bodies]
-        owner = np.repeat(np.arange(len(rows)), [len(r) for r in rows])
-        return (np.concatenate(rows) if rows else np.zeros((0, COLUMNS))), owner.astype(np.int64)
+        """All primitives (M, 8) and the index of the body that each belongs to (M,). Read only: they are made once a place."""
+        parts = [body.primitives() for body in self.bodies]
+        made = self._made
+        if made is None or len(made[0]) != len(parts) or not all(map(is_, made[0], parts)):
+            rows = np.concatenate([np.zeros((0, COLUMNS)), *parts])
+            owner = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+            self._made = made = parts, rows, owner.astype(np.int64)
+        return made[1:]
 
     def placement(self) -> Floats:
         """x, y [R] and angle [rad] of every body, (B, 3)."""

@@ -202,6 +202,9 @@ def find_rigid_pairs(state, rigid, reach, box):
     x, y, p, q1, q2 = state[0], state[1], state[2], state[3], state[4]
     used = 0
     capacity = grain.shape[0]
+    widest = 0.0
+    for i in range(state.shape[1]):
+        widest = max(widest, p[i] + math.sqrt(q1[i] ** 2 + q2[i] ** 2))
     for m in range(primitives.shape[0]):
         kind = primitives[m, 0]
         x0 = primitives[m, 1]
@@ -211,8 +214,9 @@ def find_rigid_pairs(state, rigid, reach, box):
         length = 0.0
         if kind == EDGE:
             length = (primitives[m, 5] - x0) * ux + (primitives[m, 6] - y0) * uy
+        # Nearly all are further away than any could reach, and need no root.
+        far = 1.001 * (widest + primitives[m, 7] + reach)
         for i in range(state.shape[1]):
-            extent = p[i] + math.sqrt(q1[i] ** 2 + q2[i] ** 2) + primitives[m, 7] + reach
             dx, dy = image(primitives, m, x[i], y[i], box)
             dx -= x0
             dy -= y0
@@ -220,7 +224,11 @@ def find_rigid_pairs(state, rigid, reach, box):
                 along = min(max(dx * ux + dy * uy, 0.0), length)
                 dx -= along * ux
                 dy -= along * uy
-            if dx * dx + dy * dy < extent * extent:
+            square = dx * dx + dy * dy
+            if square > far * far:
+                continue
+            extent = p[i] + math.sqrt(q1[i] ** 2 + q2[i] ** 2) + primitives[m, 7] + reach
+            if square < extent * extent:
                 if used == capacity:
                     return False
                 grain[used] = i

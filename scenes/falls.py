@@ -28,14 +28,17 @@ def sudden_fall(setup: Setup, latest: Latest) -> float:
     curve = latest.curve
     if latest.earlier is None or curve.shape[1] < SHORTEST:
         return 0.0
-    stroke, force = curve[:, -3:]
-    way = np.sign(np.diff(stroke))
-    if way[0] != way[1] or way[1] == 0.0 or not _straight_on(setup, latest):
+    (first, second, third), (_, before, now) = curve[:, -3:].tolist()
+    onwards = min(third - second, second - first) > 0.0
+    backwards = max(third - second, second - first) < 0.0
+    if not (onwards or backwards) or not _straight_on(setup, latest):
         return 0.0
-    before, now = force[1:] * way[1]
-    fall = float(before - now)
-    least = max(OF_MEAN * float(np.abs(curve[1]).mean()), OF_FORCE * float(before))
-    return fall if before > 0.0 and fall > least else 0.0
+    if backwards:
+        before, now = -before, -now
+    fall = before - now
+    if not (before > 0.0 and fall > OF_FORCE * before):
+        return 0.0
+    return fall if fall > OF_MEAN * float(np.abs(curve[1]).mean()) else 0.0
 
 
 def who_took_part(packing: Packing, latest: Latest) -> NDArray[np.bool_] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +29,15 @@ class Outlet:
     below: tuple[Point, ...] = ()
     beside: float = math.inf  # who lies in it further from the middle than this has left [R]
 
+    @cached_property
+    def _top(self) -> float:
+        return max((y for _, y in self.below), default=-math.inf)
+
     def gone(self, packing: Packing) -> NDArray[np.bool_]:
         """True for the grains that have left, (N,)."""
-        aside = self._below(packing, np.abs(packing.x) > self.beside)
-        gone: NDArray[np.bool_] = aside | (packing.y < self.y)
+        gone: NDArray[np.bool_] = packing.y < self.y
+        if self.below and self.beside < math.inf:
+            gone |= self._below(packing, np.abs(packing.x) > self.beside)
         return gone
 
     def has_come_out(self, packing: Packing) -> NDArray[np.bool_]:
@@ -40,8 +46,7 @@ class Outlet:
 
     def _below(self, packing: Packing, asked: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """True for those of the grains that are asked for (N,) that are in that space: mostly none of them is low enough."""
-        top = max((y for _, y in self.below), default=-math.inf)
-        low: NDArray[np.bool_] = asked & (packing.y < top)
+        low: NDArray[np.bool_] = asked & (packing.y < self._top)
         found = np.flatnonzero(low)
         if len(found):
             low[found] = inside(list(self.below), packing.x[found], packing.y[found])

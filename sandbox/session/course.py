@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -58,7 +58,7 @@ class Course:
 
     def copy(self) -> Course:
         """An independent copy."""
-        own = {f.name: getattr(self, f.name) for f in fields(self)}
+        own = vars(self).copy()
         for name in ("targets", "held", "blocked", "notices", "announced"):
             own[name] = own[name].copy()
         return Course(**own)

@@ -54,7 +54,8 @@ class Run:
         self.course.next_label = int(setup.packing.label.max(initial=-1)) + 1
         self._kept: Checkpoint | None = None  # of the state as it is, unless it was touched since
         self._before_edit: tuple[Checkpoint, Course] | None = None  # to go back if it was too tight
-        self._begun: Checkpoint | None = None  # what the increment under way has begun with
+        # What the increment under way has begun with: all but the course, and that.
+        self._begun: tuple[Checkpoint, Course] | None = None
         self.last: Increment
         if kept is None:
             self._relax_first()
@@ -148,7 +149,7 @@ class Run:
     def advance(self, max_iterations: int) -> bool:
         """At most so many force evaluations. True if they finished an increment."""
         if not self.engine.busy:
-            self._begun = self.settled
+            self._begun = self._before_hands(), self.course.copy()
             targets = {} if self.course.touched else self.hands.next_targets()
             if not targets and self._still:
                 return False
@@ -288,9 +289,14 @@ class Run:
         """All that the next increment depends on, or that the one under way has begun with."""
         if self.engine.busy:
             assert self._begun is not None
-            return self._begun
-        kept = self.present() if self._kept is None else self._kept
-        return replace(kept, course=self.course.copy())  # hands have come and gone since
+            kept, course = self._begun
+        else:
+            kept, course = self._before_hands(), self.course
+        return replace(kept, course=course.copy())
+
+    def _before_hands(self) -> Checkpoint:
+        """The state as it is, except that hands may have come and gone since."""
+        return self.present() if self._kept is None else self._kept
 
     def _keep(self) -> None:
         """Keep the state after an increment."""

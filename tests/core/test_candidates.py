@@ -106,4 +106,4 @@ def test_the_share_beyond_the_cone_is_that_of_its_definition(seed: int) -> None:
         force = normal.get((min(a, b), max(a, b)), 0.0) if b >= 0 else on_body[a, m]
         beyond += bool(np.hypot(x, y) > BEYOND * 0.5 * force)
     assert 0 < beyond < len(fx)
-    assert forces.beyond_cone(0.5, contacts, bodies) == beyond / len(fx)
+    assert forces.beyond_cone(0.5, 14, contacts, bodies) == beyond / len(fx)

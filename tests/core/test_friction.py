@@ -291,9 +291,9 @@ def test_never_beyond_the_cap(seed: int, size: float) -> None:
     assert len(forces.i) == len(pairs.i) + len(bodies.grain)
     # An overlap is what is left of lengths of some R: the smaller it is, the more of it is their rounding.
     rounding = 32.0 * np.finfo(np.float64).eps / min(*pairs.overlap, *bodies.overlap)
-    assert forces.beyond_cone(MU / 1.05 * (1.0 + rounding), pairs, bodies) == 0.0
+    assert forces.beyond_cone(MU / 1.05 * (1.0 + rounding), len(made.packing), pairs, bodies) == 0.0
     if forces.sliding.any():
-        assert forces.beyond_cone(MU / 1.05 * (1.0 - 1e-9), pairs, bodies) > 0.0
+        assert forces.beyond_cone(MU / 1.05 * (1.0 - 1e-9), len(made.packing), pairs, bodies) > 0.0
 
 
 def test_off_leaves_no_trace() -> None:

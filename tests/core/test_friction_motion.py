@@ -202,7 +202,8 @@ def test_a_plate_is_held_by_friction_and_no_more() -> None:
         friction = increment.friction
         on_lid = (friction.j < 0) & (owner[friction.primitive] == lid)
         assert on_lid.sum() == mine.sum()
-        assert friction.beyond_cone(MU, increment.grain_contacts, contacts) == 0.0
+        both = increment.grain_contacts, contacts
+        assert friction.beyond_cone(MU, len(engine.packing), *both) == 0.0
         assert sideways <= MU * pressing * (1.0 + 1e-12)
         if friction.sliding[on_lid].all():
             all_slide += 1

@@ -176,6 +176,25 @@ def test_no_grains() -> None:
     assert len(pack(Recipe(), seed=1, outline=SQUARE, world=walled(SQUARE), count=0)) == 0
 
 
+@given(
+    st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=3, max_size=9),
+    st.lists(st.tuples(st.floats(-4.0, 4.0), st.floats(-4.0, 4.0)), max_size=5),
+)
+def test_inside_is_an_odd_number_of_sides_to_the_right(
+    corners: list[tuple[int, int]], points: list[Point]
+) -> None:
+    def odd(x: float, y: float) -> bool:
+        crossed = 0
+        for (x0, y0), (x1, y1) in zip(corners, corners[1:] + corners[:1], strict=True):
+            if (y0 > y) != (y1 > y):
+                crossed += x < x0 + (y - y0) * (x1 - x0) / (y1 - y0)
+        return crossed % 2 == 1
+
+    x, y = np.array(points).reshape(-1, 2).T
+    outline = [(float(a), float(b)) for a, b in corners]
+    assert generate.inside(outline, x, y).tolist() == [odd(*point) for point in points]
+
+
 def test_inside_concave() -> None:
     x = np.array([0.0, 0.0, 5.0, -5.0, 5.0, 1.9, 8.0])
     y = np.array([1.0, 5.0, 5.0, 5.0, 15.0, 5.0, 5.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -216,6 +217,52 @@ def test_a_failed_increment_leaves_the_last_good_state() -> None:
     else:
         # It slipped out sideways or bore it all: then it must at least be whole.
         assert run.packing.semi_axes[1].min() > 0.0
+
+
+def assert_contacts_as_things_stand(run: Quasistatic) -> None:
+    pairs, bodies = run.contacts()
+    for field in fields(pairs):
+        now = getattr(observables.grain_contacts(run.packing), field.name)
+        assert np.array_equal(getattr(pairs, field.name), now), field.name
+    for field in fields(bodies):
+        now = getattr(observables.body_contacts(run.packing, run.world.primitives()[0]), field.name)
+        assert np.array_equal(getattr(bodies, field.name), now), field.name
+
+
+def test_contacts_are_kept_only_while_nothing_changes() -> None:
+    run = scene(step=0.1)
+    assert_contacts_as_things_stand(run)
+    assert run.contacts() is run.contacts()
+    for target in ((12.0, 5.0), (3.0, 9.0)):
+        increment(run, {"intruder": target})
+        assert_contacts_as_things_stand(run)
+    saved = run.save()
+    run.begin({"intruder": (12.0, 5.0)})
+    run.relax(5)
+    relaxation = run.relaxation
+    assert relaxation is not None
+    relaxation.write_back()  # as studies do that look on
+    assert_contacts_as_things_stand(run)
+    run.restore(saved)
+    assert_contacts_as_things_stand(run)
+    run.remove(run.packing.x > 9.0)
+    assert_contacts_as_things_stand(run)
+    run.packing.contact_stiffness = 0.5 * run.packing.contact_stiffness
+    run.look_again()
+    assert_contacts_as_things_stand(run)
+    run.world.remove("walls")
+    run.take_over(run.packing.copy())
+    assert_contacts_as_things_stand(run)
+
+
+def test_contacts_after_tries_that_are_taken_back() -> None:
+    run = scene(step=0.1, hand_strength=1e-3)
+    for _ in range(20):
+        done = increment(run, {"intruder": (12.0, 5.0)})
+        assert_contacts_as_things_stand(run)
+        if done.share == 0.0:
+            return
+    raise AssertionError("the hand has never overpowered itself")
 
 
 def test_grains_can_leave() -> None:

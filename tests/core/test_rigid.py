@@ -331,9 +331,24 @@ def test_shapes_for_the_kernels_follow_the_body_and_are_made_once_a_place() -> N
     assert body.primitives() is not first
     with pytest.raises(ValueError, match="read-only"):
         body.primitives()[0, 1] = 0.0
-    rows, _ = RigidWorld([body]).primitives()
-    rows[0, 1] = 0.0  # those are nobody's
-    assert body.primitives()[0, 1] == 4.0
+
+
+def test_shapes_of_a_world_follow_its_bodies_and_are_made_once_a_place() -> None:
+    body = intruder(at=(3.0, 5.0))
+    world = RigidWorld([wall("walls", SQUARE, 0.8, closed=True), body])
+    first, owner = world.primitives()
+    assert world.primitives()[0] is first
+    body.position = (4.0, 5.0)
+    rows, _ = world.primitives()
+    assert (first[owner == 1, 1], rows[owner == 1, 1]) == (3.0, 4.0)
+    assert np.array_equal(rows[owner == 0], first[owner == 0])
+    other = intruder(at=(9.0, 5.0))
+    world.bodies[1] = other
+    assert world.primitives()[0][owner == 1, 1] == 9.0
+    world.bodies.append(body)
+    assert world.primitives()[1].tolist() == [*owner, 2]
+    world.bodies = [body]
+    assert world.primitives()[0][:, 1].tolist() == [4.0]
 
 
 def test_only_walls_that_are_near_can_be_touched() -> None:

@@ -14,7 +14,16 @@ from core import observables, reference
 from core.packing import Packing
 from core.relaxation import Relaxation
 from core.rigid import RigidBody
-from core.rigid_contacts import EDGE, VERTEX, beyond, far_inside, past_end
+from core.rigid_contacts import (
+    EDGE,
+    VERTEX,
+    allocate,
+    beyond,
+    far_inside,
+    find_rigid_pairs,
+    image,
+    past_end,
+)
 from tests.core import examples
 
 STIFFNESS = 50.0
@@ -53,6 +62,34 @@ def around(corners: list[Vector], at: int, radius: float, steps: int) -> list[tu
         *((tuple(corner), first + s * turn) for s in np.linspace(0.0, 1.0, steps)),
         *((tuple(corner + s * (after - corner)), second) for s in np.linspace(1e-3, 0.4, steps)),
     ]
+
+
+@FEW
+@given(st.integers(0, 1000), st.floats(0.0, 0.5), st.booleans())
+def test_all_that_are_near_are_listed_in_order(seed: int, reach: float, periodic: bool) -> None:
+    random = np.random.default_rng(seed)
+    x, y = random.uniform(0.0, 12.0, (2, 30))
+    packing = Packing(x, y)
+    b, a = np.sort(random.uniform(0.2, 1.5, (2, 30)), axis=0)
+    packing.set_axes(a, b, 1.0)
+    body = RigidBody(
+        "body", discs=[(3.0, 4.0, 0.8), (9.0, 1.0, 0.1)], segments=[(1.0, 1.0, 8.0, 3.0, 0.2)]
+    )
+    rows, box = body.primitives().copy(), (13.0, 1.0 / 13.0, 0.0, 0.0, 0.0) if periodic else None
+    expected = []
+    for m, row in enumerate(rows):
+        for k, (x, y) in enumerate(packing.state[:2].T):
+            x, y = image(rows, m, x, y, box)
+            way = np.array([x - row[1], y - row[2]])
+            if row[0] == EDGE:
+                length = np.dot(row[5:7] - row[1:3], row[3:5])
+                way -= np.clip(np.dot(way, row[3:5]), 0.0, length) * row[3:5]
+            if np.hypot(*way) < packing.semi_axes[0][k] + row[7] + reach:
+                expected.append((k, m))
+    terms = allocate(rows, 30)
+    assert find_rigid_pairs(packing.state, terms, reach, box)
+    used = terms.used[0]
+    assert [*zip(terms.grain[:used], terms.primitive[:used], strict=True)] == expected
 
 
 @FEW

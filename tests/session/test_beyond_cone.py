@@ -41,7 +41,8 @@ def test_rows_tables_and_frames_carry_what_the_increment_counted(
     increment = session.run.last
     forces = increment.friction
     assert forces is not None
-    counted = forces.beyond_cone(0.3, increment.grain_contacts, increment.body_contacts)
+    contacts = increment.grain_contacts, increment.body_contacts
+    counted = forces.beyond_cone(0.3, len(session.frame().x), *contacts)
     assert increment.beyond_cone == counted
     assert 0.0 < counted <= 1.0
     assert session.history[-1].beyond_cone == counted
