@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+LIKE = 0.7  # so much of two words is the same where one is a slip of the other; of other words two thirds may be
+
 
 class InputError(ValueError):
     """Bad input. The message is one line: what is wrong, and what to do about it."""
@@ -16,8 +18,11 @@ def reason_of(error: OSError) -> str:
 
 
 def nearest(word: str, choices: Iterable[str]) -> str | None:
-    """The choice that ``word`` was probably meant to be, or None."""
-    return next(iter(get_close_matches(word.lower(), list(choices), n=1, cutoff=0.5)), None)
+    """The choice that ``word`` was probably meant to be: with a slip in it, or a part of that name alone; or None."""
+    word, choices = word.lower(), list(choices)
+    close = get_close_matches(word, choices, n=1, cutoff=LIKE)
+    parts = [choice for choice in choices if word and word in choice.split("_")]
+    return close[0] if close else parts[0] if len(parts) == 1 else None
 
 
 def did_you_mean(word: str, choices: Iterable[str]) -> str:
