@@ -74,7 +74,7 @@ def unpack(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
                 else:
                     raise InputError(f"it has a part {entry.filename[:80]!r}, which nobody knows")
     except UNREADABLE as error:
-        raise InputError(f"damaged, or no file of this program ({why_unread(error)})") from None
+        raise _damaged(error) from None
     return texts, arrays
 
 
@@ -86,7 +86,13 @@ def first_text(content: io.BufferedReader, name: str) -> Any:
             _check([entry])
             return data_of(archive.read(entry))
     except UNREADABLE as error:
-        raise InputError(f"damaged, or no file of this program ({why_unread(error)})") from None
+        raise _damaged(error) from None
+
+
+def _damaged(error: BaseException) -> InputError:
+    if isinstance(error, zipfile.BadZipFile):
+        return InputError("cut off, damaged, or no file of this program")
+    return InputError(f"damaged, or no file of this program ({why_unread(error)})")
 
 
 def data_of(text: bytes) -> Any:
@@ -147,4 +153,6 @@ def why_unread(error: BaseException) -> str:
     """In one line, why somebody's text or archive cannot be read; what Python says about itself in words of ours."""
     if str(error).startswith(_DIGITS):
         return "a whole number in it has thousands of digits"
+    if isinstance(error, UnicodeDecodeError):
+        return "it is no text"
     return " ".join(str(error).split())[:200] or type(error).__name__

@@ -16,15 +16,15 @@ from typing import Any, TypeGuard
 from core.errors import InputError
 from core.files import atomic_write
 from sandbox.files.archive import data_of, why_unread
+from sandbox.files.kinds import LOG
 from sandbox.files.older_pairs import parse_pair
-from sandbox.files.scene_file import content_of, parse_scene
+from sandbox.files.scene_file import content_of, is_scene, parse_scene
 from sandbox.session.beginning import SceneFile
 from sandbox.session.commands import Command, from_data, to_data
 from sandbox.session.log import Log
 
 log = logging.getLogger(__name__)
 
-FORMAT = "auxetic-sandbox log"
 VERSION = 1
 VERSION_WITH_PAIR = 2  # of older logs that hold a pair of files
 VERSION_WITH_START = 3  # of a log that holds a scene file
@@ -38,7 +38,7 @@ def write_log(path: str | os.PathLike[str], log: Log) -> None:
     """Write a log whole or not at all. Raises OSError as the system does."""
     start = log.start
     head = {
-        "format": FORMAT,
+        "format": LOG,
         "version": VERSION if start is None else VERSION_WITH_START,
         "scene": log.scene,
         "packing": log.packing,
@@ -71,14 +71,19 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     Where it breaks off, as a power cut may leave it, what is whole of it is read, and that is said; the hash is empty then.
     """
     path = Path(path)
-    entries = list(_entries(path))
+    try:
+        entries = list(_entries(path))
+    except InputError:
+        if is_scene(path):
+            raise InputError(
+                f"{path}: this is a scene file and no log: play or record it"
+            ) from None
+        raise
     if not entries:
         raise InputError(f"{path}: the log is empty")
     head, last = entries[0], entries[-1]
-    if head.get("format") != FORMAT:
-        raise InputError(
-            f"{path}: not a log of this program (its first line does not say {FORMAT!r})"
-        )
+    if head.get("format") != LOG:
+        raise InputError(f"{path}: not a log of this program (its first line does not say {LOG!r})")
     version = head.get("version")
     if isinstance(version, bool) or version not in _VERSIONS:
         raise InputError(
@@ -180,10 +185,9 @@ def _entries(path: Path) -> Iterator[dict[str, Any]]:
                     yield entry
     except InputError:
         raise
-    except (
-        OSError,
-        ValueError,
-    ) as error:  # also for bytes that are no text, and names that are none
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: this is no log (it is no text)") from None
+    except (OSError, ValueError) as error:  # also for names that are none
         raise InputError(f"{str(path)!r}: cannot be read ({why_unread(error)})") from None
 
 

@@ -14,12 +14,12 @@ from typing import Any, BinaryIO
 from core.errors import InputError
 from core.packing import Packing
 from sandbox.files.archive import ZIP, unpack, why_unread
+from sandbox.files.kinds import SCENE
 from sandbox.files.scene_checks import check_scene, check_state, places_of, walls_of
 from sandbox.session.beginning import SceneFile, State
 from scenes import registry
 from scenes.parameter import shown
 
-FORMAT = "auxetic-sandbox scene"
 VERSION = 1
 LARGEST_TEXT = 1 << 20  # bytes
 _KEYS = {
@@ -77,15 +77,16 @@ def scene_of_pair(file: BinaryIO) -> str | None:
     text = file.read(LARGEST_TEXT + 1)
     head = _table(text) if len(text) <= LARGEST_TEXT else {}
     scene = head.get("scene")
-    return scene if head.get("format") == FORMAT and isinstance(scene, str) else None
+    return scene if head.get("format") == SCENE and isinstance(scene, str) else None
 
 
 def _table(text: bytes) -> Mapping[str, Any]:
-    """Raises InputError for what is no TOML."""
+    """Raises InputError for what is no TOML: what is wrong in it helps only somebody who has edited a scene file."""
     try:
         return tomllib.loads(text.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        raise InputError(f"not a readable scene file ({why_unread(error)})") from None
+        why = f"not a readable scene file ({why_unread(error)})"
+        raise InputError(why if SCENE.encode() in text else "this is no scene file") from None
 
 
 def _head(name: str, text: bytes) -> Mapping[str, Any]:
@@ -96,8 +97,8 @@ def _head(name: str, text: bytes) -> Mapping[str, Any]:
         head = _table(text)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    if head.get("format") != FORMAT:
-        raise InputError(f"{name}: not a scene file of this program (no format = {FORMAT!r})")
+    if head.get("format") != SCENE:
+        raise InputError(f"{name}: not a scene file of this program (no format = {SCENE!r})")
     version = head.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise InputError(

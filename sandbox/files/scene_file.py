@@ -20,6 +20,7 @@ from core.files import atomic_write
 from core.packing import Packing
 from core.relaxation import Report
 from sandbox.files.archive import LARGEST, ZIP, first_text, pack, unpack
+from sandbox.files.kinds import SCENE, is_log
 from sandbox.files.older_pairs import is_pair, parse_pair, scene_of_pair
 from sandbox.files.plain import Arrays, Form, Plain
 from sandbox.files.scene_checks import check_history, check_scene, check_state
@@ -27,7 +28,6 @@ from sandbox.session.beginning import Made, SceneFile, State
 from sandbox.session.history import History, Row
 from scenes import registry
 
-FORMAT = "auxetic-sandbox scene"
 VERSION = 2  # 1 were pairs of files
 SUFFIX = ".scene"
 SUFFIXES = (SUFFIX, ".toml")  # of files to be opened, the older ones too
@@ -51,7 +51,7 @@ def content_of(file: SceneFile, *, compressed: bool = True) -> bytes:
     """The bytes of a scene file: always the same for the same scene."""
     arrays: Arrays = {}
     head = {
-        "format": FORMAT,
+        "format": SCENE,
         "version": VERSION,
         "scene": file.scene,
         "packing": file.packing,
@@ -73,6 +73,8 @@ def read_scene(path: str | os.PathLike[str]) -> SceneFile:
     content = _read(path, LARGEST)
     if not is_pair(content):
         return parse_scene(str(path), content)
+    if is_log(content):
+        raise InputError(f"{path}: this is a log and no scene file: replay it")
     return parse_pair(str(path), content, lambda name: _read_beside(path, name))
 
 
@@ -99,8 +101,8 @@ def parse_scene(name: str, content: bytes) -> SceneFile:
 
 def _head(head: object) -> dict[str, Any]:
     """What a file says that it is."""
-    if not isinstance(head, dict) or head.get("format") != FORMAT:
-        raise InputError(f"not a scene file of this program (no format {FORMAT!r})")
+    if not isinstance(head, dict) or head.get("format") != SCENE:
+        raise InputError(f"not a scene file of this program (no format {SCENE!r})")
     version = head.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise InputError(
@@ -198,6 +200,11 @@ def scenes_here(folder: Path) -> tuple[SceneHere, ...]:
         return ()
     found = (_look(path) for _, path in dated)
     return tuple(scene for scene in found if scene is not None)[:MOST_SHOWN]
+
+
+def is_scene(path: Path) -> bool:
+    """Does a file say that it is one of a scene? What else is wrong with it, reading it tells."""
+    return _look(path) is not None
 
 
 def _look(path: Path) -> SceneHere | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
 from sandbox.cli.main import main, parse
+from sandbox.files import kinds
 from sandbox.files.log_file import read_log, write_log
 from sandbox.files.scene_file import read_scene, write_scene
 from sandbox.record.record import Output, record
@@ -94,6 +96,69 @@ def test_files_that_are_none_are_one_line(
     said = capsys.readouterr().err
     assert said.startswith(f"error: {tmp_path / name}")
     assert said.count("\n") == 1
+
+
+PYTHONS = re.compile(r"TOML|key/value|zip file|codec|byte 0x|Expect|CRC|Traceback")
+NO_SCENE, CUT, SCENE, LOG = (
+    "this is no scene file",
+    "cut off, damaged, or",
+    "a scene file and no log: play or record it",
+    "a log and no scene file: replay it",
+)
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "why"),
+    [
+        ("record", "plain.scene", NO_SCENE),
+        ("play", "plain.scene", NO_SCENE),
+        ("record", "picture.scene", NO_SCENE),
+        ("record", "table.scene", NO_SCENE),
+        ("record", "half.scene", CUT),
+        ("record", "tail.scene", CUT),
+        ("record", "bent.scene", CUT),
+        ("replay", "made.scene", SCENE),
+        ("replay", "pair.toml", SCENE),
+        ("replay", "half.scene", "it is no text"),
+        ("replay", "picture.scene", "it is no text"),
+        ("record", "it.jsonl", LOG),
+        ("play", "it.jsonl", LOG),
+        ("record", "log.scene", LOG),
+    ],
+)
+def test_a_file_of_another_kind_is_told_in_words_of_this_program(
+    folder: Path,
+    tmp_path: Path,
+    command: str,
+    name: str,
+    why: str,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """What it is, and what it is for; nothing of what a library says about it."""
+    made = (folder / "made.scene").read_bytes()
+    log = f'{{"format": "{kinds.LOG}", "version": 1}}\n{{"end": 0, "hash": ""}}\n'.encode()
+    content = {
+        "plain.scene": b"Dear all,\nhere are the grains.\n",
+        "picture.scene": b"\x89PNG\r\n\x1a\n" + bytes(range(256)),
+        "table.scene": b"increment,force\n0,0.1\n",
+        "half.scene": made[: len(made) // 2],
+        "tail.scene": made[:-1],
+        "bent.scene": made[:600] + bytes([made[600] ^ 255]) + made[601:],
+        "made.scene": made,
+        "pair.toml": f'format = "{kinds.SCENE}"\nversion = 1\nscene = "workshop"\n'.encode(),
+        "it.jsonl": log,
+        "log.scene": b"\xef\xbb\xbf" + log,
+    }[name]
+    path = tmp_path / name
+    path.write_bytes(content)
+    words = [command, str(path)]
+    words += [] if command == "play" else ["--data", str(tmp_path / "a.csv")]
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: {path}")
+    assert why in said
+    assert said.count("\n") == 1
+    assert not PYTHONS.search(said), said
 
 
 def test_renamed_it_is_the_same_file(
