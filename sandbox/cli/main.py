@@ -24,6 +24,7 @@ from sandbox.cli import study as studies
 from sandbox.cli import sweep as sweeps
 from sandbox.cli.arguments import Parser, argument
 from sandbox.cli.exit_codes import INTERRUPTED, OK, USER_MISTAKE
+from sandbox.cli.output_words import DEFAULTS
 from sandbox.files.pipes import let_go
 from sandbox.interrupts import hear_no_more, stop_like_ctrl_c
 from scenes.parameter import LARGEST_SEED
@@ -203,7 +204,7 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "--fps",
         type=argument(arguments.number(1.0, max(arguments.HIGHEST_FPS.values()))),
-        default=30.0,
+        default=DEFAULTS["fps"],
         metavar="N",
         help="frames a second (default: 30)",
     )
@@ -211,7 +212,7 @@ def _add_record(command: Command) -> None:
     record.add_argument(
         "--every",
         type=argument(arguments.whole_number(1, 1000)),
-        default=1,
+        default=DEFAULTS["every"],
         metavar="N",
         help="a frame of the film or page for every N increments (default: 1)",
     )
@@ -373,7 +374,7 @@ def _add_gif(parser: Parser) -> None:
     parser.add_argument(
         "--gif",
         type=argument(arguments.one_of("loop", "once", "hold")),
-        default="loop",
+        default=DEFAULTS["gif"],
         metavar="END",
         help="an animation begins again (loop, the default), stays at its last frame (once), or holds it before (hold)",
     )
@@ -384,7 +385,7 @@ def _add_data(parser: Parser) -> None:
     parser.add_argument(
         "--csv",
         type=argument(arguments.one_of("plain", "excel")),
-        default="plain",
+        default=DEFAULTS["csv"],
         metavar="FORM",
         help="plain (default), or excel: as Excel opens it in the country of --language",
     )
@@ -405,7 +406,7 @@ def _add_compare(parser: Parser) -> None:
 
 
 def _add_size(
-    parser: Parser, default: tuple[int, int] | None = (1280, 720), said: str = "1280x720"
+    parser: Parser, default: tuple[int, int] | None = DEFAULTS["size"], said: str = "1280x720"
 ) -> None:
     parser.add_argument(
         "--size",
@@ -422,14 +423,14 @@ def _add_look(parser: Parser, language_default: str = "en") -> None:
     parser.add_argument(
         "--view",
         type=argument(arguments.one_of(*VIEWS)),
-        default="kind",
+        default=DEFAULTS["view"],
         metavar="NAME",
         help=f"what the grains show: {', '.join(VIEWS)} (default: kind)",
     )
     parser.add_argument(
         "--theme",
         type=argument(arguments.one_of("dark", "light")),
-        default="dark",
+        default=DEFAULTS["theme"],
         metavar="NAME",
         help="dark (default), or light for a bright room",
     )

@@ -6,8 +6,9 @@ Light at the top, as the command line is.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError
 from sandbox.cli import arguments
@@ -16,9 +17,32 @@ if TYPE_CHECKING:
     from sandbox.files.table import Spelling
     from sandbox.record.record import Output
 
-FILM_SUFFIXES = (".mp4", ".webm", ".gif", ".png")
+MOVING_SUFFIXES = (".mp4", ".webm", ".gif")
+FILM_SUFFIXES = (*MOVING_SUFFIXES, ".png")
 PAGE_SUFFIXES = (".html", ".htm")
 TRAJECTORY_SUFFIXES = (".xyz", ".extxyz", ".npz", ".vtp", ".pvd")
+
+# How it is written, where nothing else is said.
+DEFAULTS: Mapping[str, Any] = {
+    "view": "kind",
+    "theme": "dark",
+    "size": (1280, 720),
+    "fps": 30.0,
+    "every": 1,
+    "gif": "loop",
+    "csv": "plain",
+}
+_PICTURE = "there is no picture; give --out FILE.mp4"
+# Which files have use for each of these, and what is said where none is written.
+_USES: Mapping[str, tuple[Sequence[str], str]] = {
+    "view": ((*FILM_SUFFIXES, *PAGE_SUFFIXES), _PICTURE),
+    "theme": ((*FILM_SUFFIXES, *PAGE_SUFFIXES), _PICTURE),
+    "size": (FILM_SUFFIXES, _PICTURE),
+    "fps": (MOVING_SUFFIXES, "there is no film; give --out FILE.mp4"),
+    "every": ((*FILM_SUFFIXES, *PAGE_SUFFIXES, *TRAJECTORY_SUFFIXES), _PICTURE),
+    "gif": ((".gif",), "there is no animation; give --out FILE.gif"),
+    "csv": ((".csv",), "there is no table; give --data FILE.csv"),
+}
 
 
 def output_of(
@@ -46,20 +70,25 @@ def output_of(
             from sandbox.record.video import webm_codec
 
             webm_codec()  # raises where there is none
-    if options.gif != "loop" and (film is None or film.suffix.lower() != ".gif"):
-        raise InputError(f"--gif {options.gif}: there is no animation; give --out FILE.gif")
     if options.data:
         table = arguments.output_file("--data", options.data, [".csv"])
     if options.trajectory:
         trajectory = _trajectory(options.trajectory)
     files = {"--out": film or page, "--data": table, "--trajectory": trajectory}
+    _check_use(options, {path.suffix.lower() for path in files.values() if path})
     arguments.check_different(files)
     if not any(files.values()):
         return None
-    if options.csv != "plain" and table is None:
-        raise InputError(f"--csv {options.csv}: there is no table; give --data FILE.csv")
     look = size, fps, options.view, options.theme
     return Output(film, table, *look, every, _spelling(options.csv), page, trajectory, options.gif)
+
+
+def _check_use(options: argparse.Namespace, suffixes: Set[str]) -> None:
+    """Raise InputError for an option that nothing of what is written has use for."""
+    for name, (having_use, why) in _USES.items():
+        value = getattr(options, name, DEFAULTS[name])
+        if value != DEFAULTS[name] and suffixes.isdisjoint(having_use):
+            raise InputError(f"--{name}: {why}")
 
 
 def _trajectory(text: str) -> Path:

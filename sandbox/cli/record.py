@@ -8,7 +8,7 @@ from contextlib import suppress
 from core.errors import InputError
 from sandbox.cli import arguments
 from sandbox.cli.exit_codes import CHECK_FAILED, DIFFERENT, INTERRUPTED, OK
-from sandbox.cli.output_words import output_of
+from sandbox.cli.output_words import DEFAULTS, output_of
 from sandbox.cli.report import report
 from sandbox.cli.scene_words import row_of, sessions_of
 from sandbox.interrupts import deferred
@@ -53,7 +53,7 @@ def replay(options: argparse.Namespace) -> int:
     """Repeat what a log says, and compare where it leads."""
     from sandbox.files.log_file import read_log
 
-    output = output_of(options, (1280, 720), 30.0)
+    output = output_of(options, DEFAULTS["size"], DEFAULTS["fps"])
     log = read_log(options.log)
     from sandbox.session.replay import session_of
 

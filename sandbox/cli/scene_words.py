@@ -70,7 +70,15 @@ def row_of(scene: str | None) -> Made | None:
         return None
     from sandbox.sweep.tables import is_sweep, made
 
-    return made(Path(folder), row) if is_sweep(folder) else None
+    if is_sweep(folder):
+        return made(Path(folder), row)
+    words = f"{folder}#{row}"
+    if not Path(words).exists():
+        if Path(folder).is_dir():
+            raise InputError(f"{words}: the folder {folder} holds no sweep")
+        if row.isdecimal():
+            raise InputError(f"{words}: there is no folder {folder}")
+    return None
 
 
 def lesson_of(scene: str | None) -> Lesson | None:

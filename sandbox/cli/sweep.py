@@ -171,7 +171,10 @@ def _asked(options: argparse.Namespace) -> tuple[Path, Request]:
         return folder, read_request(folder).with_more_seeds(options.more_seeds)
     if Path(options.scene).is_dir():
         raise InputError(f"{options.scene}: this folder holds no sweep")
-    registry.get(options.scene)
+    try:
+        registry.get(options.scene)
+    except InputError as error:
+        raise InputError(f"there is no folder {options.scene}, and {error}") from None
     if not options.out:
         raise InputError("--out DIR is needed: where shall the tables go?")
     request = ask(

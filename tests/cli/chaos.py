@@ -53,11 +53,12 @@ PATIENCE = 300.0  # [s], of a machine that does other things too
 LONGEST = 8.0  # after the first sign of life [s]
 ROOM = 50_000  # bytes of the full disk
 EARLIER = b"earlier"
-HOPPER = ["hopper", "--steps", "100000", "--size", "320x240"]
+HOPPER = ["hopper", "--steps", "100000"]
+SMALL = ["--size", "320x240"]
 TRAJECTORY = ["--trajectory", "run.npz"]
 WORKS = {
-    "film": ["record", *HOPPER, "--out", "film.mp4", "--data", "run.csv"],
-    "animation": ["record", *HOPPER, "--out", "film.gif", "--data", "run.csv", *TRAJECTORY],
+    "film": ["record", *HOPPER, *SMALL, "--out", "film.mp4", "--data", "run.csv"],
+    "animation": ["record", *HOPPER, *SMALL, "--out", "film.gif", "--data", "run.csv", *TRAJECTORY],
     "side by side": ["record", *HOPPER, "--compare", "regular,auxetic", "--data", "run.csv"],
     "replay": ["replay", "log.jsonl", "--out", "film.mp4", "--data", "run.csv", *TRAJECTORY],
     "study": ["study", "hand", "--quick", "--out", "results"],

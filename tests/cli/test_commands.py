@@ -23,7 +23,8 @@ pytestmark = pytest.mark.end_to_end
 
 REPOSITORY = Path(__file__).parents[2]
 STEPS = 5
-QUICK = ["hopper", "--steps", str(STEPS), "--size", "320x240"]
+SHORT = ["hopper", "--steps", str(STEPS)]
+QUICK = [*SHORT, "--size", "320x240"]
 # Long enough for the slowest machine to compile all kernels.
 PATIENCE = 600.0
 
@@ -143,8 +144,8 @@ def test_record_writes_film_and_table_and_says_what_came_of_it(tmp_path: Path) -
 
 def test_same_seed_same_state_with_and_without_frames(tmp_path: Path) -> None:
     drawn = sandbox(tmp_path, "record", *QUICK, "--out", "last.png", "--data", "drawn.csv")
-    plain = sandbox(tmp_path, "record", *QUICK, "--data", "plain.csv")
-    other = sandbox(tmp_path, "record", *QUICK, "--data", "other.csv", "--seed", "2")
+    plain = sandbox(tmp_path, "record", *SHORT, "--data", "plain.csv")
+    other = sandbox(tmp_path, "record", *SHORT, "--data", "other.csv", "--seed", "2")
     assert state(drawn.stdout) == state(plain.stdout) != state(other.stdout)
     assert (tmp_path / "drawn.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
     assert plain.stdout.startswith(f"{STEPS} increments")  # and not a word of frames
@@ -219,6 +220,7 @@ def test_ctrl_c_while_building_writes_nothing(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
 
 
+TABLE = ["record", "hopper", "--data", "run.csv"]
 MISTAKES = {
     "scene": (["record", "hoper", "--out", "film.mp4"], "hopper"),
     "scene to play": (["play", "hoper"], "hopper"),
@@ -239,6 +241,24 @@ MISTAKES = {
         ["record", "hopper", "--out", "a.png", "--csv", "excel"],
         "--data FILE.csv",
     ),
+    "form of no table of a log": (["replay", "missing.jsonl", "--csv", "excel"], "--data FILE.csv"),
+    "view of no picture": ([*TABLE, "--view", "pressure"], "--view: there is no picture"),
+    "theme of no picture": ([*TABLE, "--theme", "light"], "--theme: there is no picture"),
+    "size of no picture": ([*TABLE, "--size", "640x360"], "--out FILE.mp4"),
+    "size of a page": (["record", "hopper", "--out", "a.html", "--size", "640x360"], "--size: "),
+    "speed of no film": ([*TABLE, "--fps", "20"], "--fps: there is no film"),
+    "speed of one picture": (["record", "hopper", "--out", "a.png", "--fps", "20"], "no film"),
+    "pictures left out of none": ([*TABLE, "--every", "3"], "--every: there is no picture"),
+    "view of nothing": (["record", "hopper", "--view", "pressure"], "--view: there is no picture"),
+    "view of a trajectory": (
+        ["record", "hopper", "--trajectory", "a.xyz", "--view", "pressure"],
+        "--view: there is no picture",
+    ),
+    "view of a log": (["replay", "missing.jsonl", "--view", "pressure"], "--out FILE.mp4"),
+    "folder or scene of a sweep": (["sweep", "nodir"], "there is no folder nodir, and no scene"),
+    "scene of a sweep": (["sweep", "hoper"], "did you mean hopper?"),
+    "run of no folder": (["record", "nodir#3", *TABLE[2:]], "nodir#3: there is no folder nodir"),
+    "run of no folder to play": (["play", "nodir#3"], "nodir#3: there is no folder nodir"),
     "several trajectories": (
         ["record", "hopper", "--trajectory", "a.xyz", "--compare", "regular,mixed"],
         "leave --compare out",
@@ -306,6 +326,19 @@ def test_all_mistakes_are(
     tmp_path: Path, name: str, in_this_process: Callable[[Path, list[str]], Ended]
 ) -> None:
     refused_at_once(in_this_process, tmp_path, *MISTAKES[name])
+
+
+@pytest.mark.parametrize("row", ["3", "0", "three"])
+@pytest.mark.parametrize("command", [["record", "--data", "run.csv"], ["play"]])
+def test_a_run_of_a_folder_without_a_sweep_is_told_of_that_folder(
+    tmp_path: Path,
+    command: list[str],
+    row: str,
+    in_this_process: Callable[[Path, list[str]], Ended],
+) -> None:
+    (tmp_path / "mine").mkdir()
+    words = [*command, f"mine#{row}"]
+    refused_at_once(in_this_process, tmp_path, words, f"mine#{row}: the folder mine holds no sweep")
 
 
 def write_log(path: Path, *records: dict[str, object]) -> None:
