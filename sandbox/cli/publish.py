@@ -37,8 +37,13 @@ def site(options: argparse.Namespace) -> int:
 
 def web(options: argparse.Namespace) -> int:
     """Write pages on which scenes run."""
+    from sandbox import environment
     from sandbox.ensemble.pool import Pool
     from sandbox.files.folder import prepare_folder
+    from sandbox.web.toolchain import require_tools
+
+    environment.hide_greeting()
+    require_tools()
     from sandbox.web import building
 
     asked = [options.single] if options.single else options.scene or building.SCENES

@@ -25,12 +25,23 @@ ROOT = HERE.parents[1]
 SCRIPTS = ("page.ts", "worker.ts")
 
 
+def require_tools() -> None:
+    """Raise InputError where anything is missing that pages are made with, and that is not made already."""
+    _require_linker()
+    if not (_cache() / _bundle_name(_page_files())).exists():
+        _npm()
+
+
+def _require_linker() -> None:
+    require("pages need", "ziglang", "the linker of Zig", "web")
+
+
 def kernels(*, periodic: bool = False) -> bytes:
     """All that a page calls, as WebAssembly: the same kernels as on the desk, without fast math; for open or ``periodic`` cells.
 
     Raises InputError where the compiler is not installed, or fails.
     """
-    require("pages need", "ziglang", "the linker of Zig", "web")
+    _require_linker()
     sources = source_hash(CORE, ROOT / "scenes", HERE / "increment", HERE / "wasm")
     runtime = hashlib.sha256((HERE / "wasm" / "runtime.c").read_bytes()).hexdigest()[:8]
     kind = ("periodic",) if periodic else ()
@@ -50,23 +61,40 @@ def _compile(out: Path, *kind: str) -> None:
 
 def scripts() -> dict[str, str]:
     """The scripts of the page, bundled, by the names in ``SCRIPTS``. Raises InputError where Node.js is missing, or fails."""
+    files = _page_files()
+    folder = _kept(_bundle_name(files), lambda out: _bundle(files, out))
+    return {name: (folder / name).read_text(encoding="utf-8") for name in SCRIPTS}
+
+
+def _page_files() -> list[Path]:
+    return sorted(path for path in PAGE.rglob("*") if path.is_file() and _own(path))
+
+
+def _bundle_name(files: list[Path]) -> str:
     digest = hashlib.sha256()
-    files = sorted(path for path in PAGE.rglob("*") if path.is_file() and _own(path))
     for path in files:
         digest.update(path.relative_to(PAGE).as_posix().encode())
         digest.update(path.read_bytes())
-    folder = _kept(f"page-{digest.hexdigest()[:16]}", lambda out: _bundle(files, out))
-    return {name: (folder / name).read_text(encoding="utf-8") for name in SCRIPTS}
+    return f"page-{digest.hexdigest()[:16]}"
 
 
 def _own(path: Path) -> bool:
     return "node_modules" not in path.parts and path.suffix in (".ts", ".json")
 
 
+def _npm() -> str:
+    """The program. Raises InputError where it is missing, or what runs it."""
+    npm, node = shutil.which("npm"), shutil.which("node")
+    if npm is None or node is None:
+        missing = "npm" if npm is None else "Node.js"
+        raise InputError(
+            f"pages need {missing}, which is not installed: install Node.js 20 or newer"
+        )
+    return npm
+
+
 def _bundle(files: list[Path], out: Path) -> None:
-    npm = shutil.which("npm")
-    if npm is None:
-        raise InputError("pages need npm, which is not installed: install Node.js 20 or newer")
+    npm = _npm()
     work = out.with_suffix(".work")
     shutil.rmtree(work, ignore_errors=True)
     for path in files:
@@ -85,9 +113,13 @@ def _bundle(files: list[Path], out: Path) -> None:
     shutil.rmtree(work)
 
 
+def _cache() -> Path:
+    return user_cache_path("auxetic-sandbox") / "web"
+
+
 def _kept(name: str, make: Callable[[Path], None]) -> Path:
     """What ``make`` makes, from the cache if it is there."""
-    folder = user_cache_path("auxetic-sandbox") / "web"
+    folder = _cache()
     there = folder / name
     if not there.exists():
         folder.mkdir(parents=True, exist_ok=True)

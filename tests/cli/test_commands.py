@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import imageio.v2
 import numpy as np
@@ -339,6 +340,28 @@ def test_a_run_of_a_folder_without_a_sweep_is_told_of_that_folder(
     (tmp_path / "mine").mkdir()
     words = [*command, f"mine#{row}"]
     refused_at_once(in_this_process, tmp_path, words, f"mine#{row}: the folder mine holds no sweep")
+
+
+@pytest.mark.parametrize(
+    ("missing", "advice"),
+    [("ziglang", "auxetic-sandbox[web]"), ("npm", "install Node.js"), ("node", "install Node.js")],
+)
+def test_what_pages_are_made_with_is_missed_before_anything_begins(
+    tmp_path: Path,
+    missing: str,
+    advice: str,
+    in_this_process: Callable[[Path, list[str]], Ended],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def found(name: str) -> str | None:
+        return None if name == missing else name
+
+    (tmp_path / "cache").mkdir()
+    modules = SimpleNamespace(util=SimpleNamespace(find_spec=found))
+    monkeypatch.setattr("sandbox.extras.importlib", modules)
+    monkeypatch.setattr("sandbox.web.toolchain.shutil", SimpleNamespace(which=found))
+    monkeypatch.setattr("sandbox.web.toolchain.user_cache_path", lambda _: tmp_path / "cache")
+    refused_at_once(in_this_process, tmp_path, ["web", "--out", "pages"], advice)
 
 
 def write_log(path: Path, *records: dict[str, object]) -> None:
