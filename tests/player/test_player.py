@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from sandbox.cli import main as cli
+from sandbox.draw.views import VIEWS
 from sandbox.player import coding
 from sandbox.player.coding import Writer, read, unpacked
 from sandbox.player.kept import QUANTITIES
@@ -65,6 +66,17 @@ def recorded(text: str) -> tuple[dict[str, Any], bytes]:
     found = re.search(r'id="recording">([^<]+)<', text)
     assert found
     return unpacked(base64.b64decode(found[1]))
+
+
+def test_every_view_with_a_measure_has_it_on_the_page() -> None:
+    """A page measures by itself; without a measure it would stay blank."""
+    table = re.search(r"const MEASURES = \{\n(.*?)\n\};", asset("unpack.js"), re.DOTALL)
+    assert table
+    measured = set(re.findall(r"^ +(\w+)(?::|,$)", table[1], re.MULTILINE))
+    expected = {view.name for view in VIEWS.values() if view.measure}
+    where = "MEASURES of sandbox/player/assets/unpack.js"
+    assert not expected - measured, f"add {sorted(expected - measured)} to {where}"
+    assert not measured - expected, f"no view has what is in {where}: {sorted(measured - expected)}"
 
 
 def test_runs_of_one_packing_are_told_apart(moments: list[list[Frame]]) -> None:
