@@ -54,7 +54,7 @@ def grains_kept(
     return Check(
         "no grain is lost and none has passed a wall",
         complete and stray == 0,
-        f"{out} left by the outlet, {stray} astray",
+        f"{stray} astray" if outlet is None else f"{out} left by the outlet, {stray} astray",
     )
 
 

@@ -120,7 +120,7 @@ def check_material(settings: Mapping[str, Value]) -> None:
     if ratio > 0.0:
         if any(settings[p.name] != p.default for p in MATERIAL if p.name in POISSON_RATIOS):
             raise InputError(
-                "give stiffness_ratio or Poisson's ratios, not both: set one of them back to its default"
+                "give stiffness_ratio or Poisson's ratios, not both: leave one of them at its default"
             )
         if ratio < LEAST_RATIO:
             raise InputError(
@@ -133,7 +133,7 @@ def check_material(settings: Mapping[str, Value]) -> None:
     if softness > 0.0:
         if settings["contact_stiffness"] != DEFAULT_CONTACT_STIFFNESS:
             raise InputError(
-                "give softness or contact_stiffness, not both: set one of them back to its default"
+                "give softness or contact_stiffness, not both: leave one of them at its default"
             )
 
         def stiffest_of(softness: float) -> float:

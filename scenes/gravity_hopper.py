@@ -72,7 +72,7 @@ class GravityHopper(Scene):
             "tilt", 0.0, "deg", -40.0, 40.0, "tilt of the hopper: turns gravity to the right"
         ),
         Parameter(
-            "gravity", 0.01, "k/R", 0.0005, 0.05, "weight of a large grain over k R", live=True
+            "gravity", 0.01, "k/R", 0.0005, 0.05, "weight of a large grain over R²", live=True
         ),
         Parameter(
             "fall",

@@ -166,7 +166,8 @@ class Hopper(Scene):
             )
             return Remarks((text,), found, {"arch": text})
         text = Text(
-            "clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=since / DIAMETER
+            "clogged: {diameters:.1f} diameters of stroke, no grain came out",
+            diameters=since / DIAMETER,
         )
         if found is not None:
             text = Text(

@@ -242,6 +242,14 @@ MISTAKES = {
         ["record", "hopper", "--out", "a.png", "--csv", "excel"],
         "--data FILE.csv",
     ),
+    "softness beside stiffness": (
+        [*TABLE, "--set", "softness=0.2", "--set", "contact_stiffness=2"],
+        "not both: leave one of them",
+    ),
+    "ratio beside Poisson's ratios": (
+        [*TABLE, "--set", "stiffness_ratio=2", "--set", "poisson_regular=0.1"],
+        "not both: leave one of them",
+    ),
     "form of no table of a log": (["replay", "missing.jsonl", "--csv", "excel"], "--data FILE.csv"),
     "view of no picture": ([*TABLE, "--view", "pressure"], "--view: there is no picture"),
     "theme of no picture": ([*TABLE, "--theme", "light"], "--theme: there is no picture"),

@@ -171,7 +171,7 @@ def test_the_words_of_a_run_in_a_small_window_with_large_letters(
     size, scale = TIGHT
     renderer = Renderer(size, scale)
     renderer.arrange(panes=panes, panel=True, timeline=True)
-    said = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=1.4)
+    said = Text("clogged: {diameters:.1f} diameters of stroke, no grain came out", diameters=1.4)
     frame = hopper_frame(title=registry.get(scene).title, scene=scene, notices=(said,))
     renderer.draw([frame] * panes, notices=[words.SPEED_TOAST_MOST])
     nothing_cut(texts, size)
@@ -187,7 +187,7 @@ def test_long_words_at_the_foot_of_narrow_canvases(
     texts: list[tuple[str, pygame.Rect]], size: tuple[int, int], scale: float
 ) -> None:
     """The longest that a hopper says, in three canvases beside the panel where there is room for it."""
-    clogged = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=2.4)
+    clogged = Text("clogged: {diameters:.1f} diameters of stroke, no grain came out", diameters=2.4)
     said = Text(
         "{clogged}, held by an arch of {grains} {grains:grain|grains}", clogged=clogged, grains=7
     )
