@@ -243,11 +243,11 @@ MISTAKES = {
         "--data FILE.csv",
     ),
     "softness beside stiffness": (
-        [*TABLE, "--set", "softness=0.2", "--set", "contact_stiffness=2"],
+        [*TABLE, "--set", "softness=0.02", "--set", "contact_stiffness=80"],
         "not both: leave one of them",
     ),
     "ratio beside Poisson's ratios": (
-        [*TABLE, "--set", "stiffness_ratio=2", "--set", "poisson_regular=0.1"],
+        [*TABLE, "--set", "stiffness_ratio=2", "--set", "auxetic_poisson_ratio=-0.5"],
         "not both: leave one of them",
     ),
     "form of no table of a log": (["replay", "missing.jsonl", "--csv", "excel"], "--data FILE.csv"),

@@ -18,7 +18,7 @@ from sandbox.session.session import Session
 from scenes import registry
 from scenes.parameter import Parameter
 from scenes.scene import Scene
-from tests.scenes.told import check_table
+from tests.scenes.told import TOLD, check_table, tilt
 
 INCREMENTS = 15
 REPOSITORY = Path(__file__).parents[2]
@@ -93,6 +93,8 @@ def test_plays(name: str, kind: str) -> None:
         assert handle.radius > 0.0
         assert low_x <= handle.x <= high_x, handle.name
         assert low_y <= handle.y <= high_y, handle.name
+    astray = next(c.measured for c in session.checks() if "no grain is lost" in c.name)
+    assert ("outlet" in astray) == (session.run.setup.outlet is not None)
     # Where one place takes a few increments to let go, so few increments cannot tell nine of ten.
     broken = [c for c in session.checks() if c.holds is False and "converge" not in c.name]
     assert not broken
@@ -100,6 +102,16 @@ def test_plays(name: str, kind: str) -> None:
     for check in session.checks():
         assert check.name
         assert check.measured
+
+
+def test_a_scene_that_nobody_has_told_of_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    session = run("two_ellipses", "mixed")
+    monkeypatch.delitem(TOLD, "two_ellipses")
+    with pytest.raises(AssertionError, match=r"no entry for two_ellipses in TOLD of .*told\.py"):
+        check_table(session)
+    monkeypatch.setitem(TOLD, "two_ellipses", {"tilt": tilt})
+    with pytest.raises(AssertionError, match=r"no columns \['tilt'\] for two_ellipses"):
+        check_table(session)
 
 
 @pytest.mark.parametrize(("name", "kind"), SCENES)

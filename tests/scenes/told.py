@@ -35,8 +35,12 @@ def check_table(session: Session) -> None:
     else:  # nothing but what the grains do not hold among themselves
         left = float(session.run.last.unbalanced.sum())
         assert np.hypot(*np.broadcast_to(on_bodies, 2)) <= left * (1.0 + 1e-9) + 1e-12
-    for name, expected in TOLD.get(frame.scene, FELT).items():
-        name = name or frame.curve_label
+    told = {name or frame.curve_label: what for name, what in TOLD.get(frame.scene, FELT).items()}
+    where = f"{frame.scene} in TOLD of tests/scenes/told.py"
+    missing = sorted(set(told) - set(columns))
+    assert not missing or frame.scene in TOLD, f"no entry for {where}"
+    assert not missing, f"no columns {missing} for {where}"
+    for name, expected in told.items():
         found = expected(session, columns)
         assert columns[name][-1] == pytest.approx(found, rel=1e-9, abs=1e-12), name
 

@@ -6,6 +6,7 @@ import ast
 import re
 import string
 from collections.abc import Iterator
+from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from sandbox.session.commands import Protocol
 from sandbox.session.session import Session
 from sandbox.words import language, words
 from scenes import registry
+from scenes.parameter import Parameter
+from scenes.scene import Scene
 from scenes.text import Text, filled, message
 
 REPOSITORY = Path(__file__).parents[2]
@@ -75,7 +78,9 @@ def test_english_comes_first() -> None:
 @pytest.mark.parametrize("code", OTHERS)
 def test_every_table_says_the_same_things(code: str) -> None:
     source, other = words_of(language.SOURCE), words_of(code)
-    assert sorted(other) == sorted(source)
+    missing, odd = sorted(source.keys() - other.keys()), sorted(other.keys() - source.keys())
+    assert not missing, f"sandbox/words/{code}.toml has no {', '.join(missing)}"
+    assert not odd, f"sandbox/words/{code}.toml has, and en.toml has not: {', '.join(odd)}"
     for key, text in source.items():
         assert other[key].strip() or not text, key
         assert placeholders(other[key]) == placeholders(text), key
@@ -194,26 +199,54 @@ def test_no_word_is_taken_at_import() -> None:
                         )
 
 
+def not_as_in_english(scene: Scene) -> list[str]:
+    """What the English table lacks of a scene, or says otherwise: the key, its table, and what is to be there."""
+    name, english = scene.name, language.table(language.SOURCE)
+    said = english["scenes"].get(name, {})
+    wrong = [
+        f"{key} in [scenes.{name}]: {getattr(scene, key)!r}"
+        for key in ("title", "question", "about")
+        if said.get(key) != getattr(scene, key)
+    ]
+    for parameter in scene.parameters:
+        if parameter.name not in english["parameters"]:
+            wrong.append(f"{parameter.name} in [parameters]: its name in plain words")
+        if words.parameter_help(name, parameter.name) != parameter.help:
+            wrong.append(f"{parameter.name} in [parameter_help]: {parameter.help!r}")
+        if re.fullmatch("[a-z]{3,}", parameter.unit) and parameter.unit not in english["units"]:
+            wrong.append(f"{parameter.unit} in [units]: {parameter.unit!r}")
+    return wrong
+
+
 @pytest.mark.parametrize("name", registry.names())
 def test_scenes_and_their_parameters_are_in_the_tables(name: str) -> None:
-    scene = registry.get(name)
-    english = language.table(language.SOURCE)
-    assert english["scenes"][name]["title"] == scene.title
-    assert english["scenes"][name]["question"] == scene.question
-    assert english["scenes"][name]["about"] == scene.about
-    for parameter in scene.parameters:
-        assert parameter.name in english["parameters"]
-        assert words.parameter_help(name, parameter.name) == parameter.help
-        if re.fullmatch("[a-z]{3,}", parameter.unit):
-            assert parameter.unit in english["units"]
+    wrong = not_as_in_english(registry.get(name))
+    assert not wrong, "sandbox/words/en.toml has not, or otherwise: " + "; ".join(wrong)
+
+
+def test_words_that_a_new_scene_lacks_are_named_with_their_tables() -> None:
+    my_row = copy(registry.get("grain_row"))
+    push = Parameter("my_push", 1.0, "furlong", 0.0, 2.0, "how far it is pushed")
+    for key, value in {"name": "my_row", "title": "My row", "parameters": (push,)}.items():
+        setattr(my_row, key, value)
+    wrong = not_as_in_english(my_row)
+    assert [line.partition(":")[0] for line in wrong] == [
+        "title in [scenes.my_row]",
+        "question in [scenes.my_row]",
+        "about in [scenes.my_row]",
+        "my_push in [parameters]",
+        "my_push in [parameter_help]",
+        "furlong in [units]",
+    ]
 
 
 def test_no_scene_or_parameter_in_the_tables_is_gone() -> None:
     english = language.table(language.SOURCE)
     parameters = {p.name for name in registry.names() for p in registry.get(name).parameters}
-    assert set(english["scenes"]) == set(registry.names())
-    assert set(english["parameters"]) == parameters
-    assert set(english["parameter_help"]) <= parameters
+    gone = set(english["scenes"]) - set(registry.names())
+    assert not gone, f"[scenes.*] of scenes that are gone: {gone}"
+    gone = set(english["parameters"]) | set(english["parameter_help"])
+    assert not gone - parameters, f"[parameters], [parameter_help]: {gone - parameters} are gone"
 
 
 def test_words_are_looked_up_in_the_present_language() -> None:
@@ -232,16 +265,16 @@ def test_words_are_looked_up_in_the_present_language() -> None:
 
 
 def test_texts_are_said_in_the_present_language() -> None:
-    inner = Text("clogged: {diameters:.1f} diameters of stroke, nothing left", diameters=1.44)
+    inner = Text("clogged: {diameters:.1f} diameters of stroke, no grain came out", diameters=1.44)
     outer = Text(
         "{clogged}, held by an arch of {grains} {grains:grain|grains}", clogged=inner, grains=7
     )
-    plain = "clogged: 1.4 diameters of stroke, nothing left, held by an arch of 7 grains"
+    plain = "clogged: 1.4 diameters of stroke, no grain came out, held by an arch of 7 grains"
     assert outer == plain
     assert words.say(outer) == plain
     language.use("de")
     assert words.say(outer) == (
-        "verstopft: 1,4 Durchmesser Weg, nichts kam heraus, gehalten von einem Bogen aus 7 Körnern"
+        "verstopft: 1,4 Durchmesser Weg, kein Korn kam heraus, gehalten von einem Bogen aus 7 Körnern"
     )
     assert words.say("stroke [R]") == "Weg [R]"
     assert words.say("nobody translated this") == "nobody translated this"
