@@ -13,7 +13,9 @@ import sys
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
-CELL = re.compile(r"!\[[^]]*\]\((assets/gallery/(\w+)\.png)\) `([^`]+)`")  # a picture and its command
+CELL = re.compile(
+    r"!\[[^]]*\]\((assets/gallery/(\w+)\.png)\) `([^`]+)`"
+)  # a picture and its command
 TOP = re.compile(r"`record ([^`]+) --out FILE\.gif`")
 
 
