@@ -84,5 +84,5 @@ def test_mistakes_are_one_line_and_come_first(
 
 def test_all_parts_are_there() -> None:
     assert len(list(bench.parts(quick=True, peers=False))) == 8
-    assert len(list(bench.parts(quick=False, peers=False))) == 10
+    assert len(list(bench.parts(quick=False, peers=False))) == 11
     assert bench.QUICK.frames < bench.FULL.frames
