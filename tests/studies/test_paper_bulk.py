@@ -45,6 +45,13 @@ def test_compression_and_contacts() -> None:
     assert bulk.strain(runs[0])[0] == pytest.approx(0.001)  # the pressure vanishes there
     for name in ("compression", "contacts_strain", "contacts_pressure"):
         assert set(verdicts(name, runs).values()) == {HOLDS}
+    # Grains rearrange in the first increment, and the pressure falls: it begins to rise in the next.
+    stroke, force = runs[0].column("stroke"), runs[0].column("force")
+    force[1] = 0.9 * force[0]
+    late = replace(runs[0], columns={**runs[0].columns, "force": force.tolist()})
+    assert bulk.strain(late) - stroke == pytest.approx(0.001)
+    with pytest.raises(Unmeasurable, match="does not rise"):
+        bulk.strain(replace(late, columns={**late.columns, "force": [1.0] * len(stroke)}))
     alike = squeezes(dict.fromkeys(LAMBDAS, 2.0), dict.fromkeys(LAMBDAS, 30.0))
     assert verdicts("compression", alike)["a much slower one"] == FAILS
     assert HOLDS not in verdicts("contacts_strain", alike).values()

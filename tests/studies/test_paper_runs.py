@@ -30,6 +30,7 @@ from sandbox.studies.paper.claims import (
     Part,
     Reading,
     Threshold,
+    Unmeasurable,
     exactly,
 )
 from sandbox.studies.paper.runs import (
@@ -118,6 +119,20 @@ def test_store_keeps_runs_and_tries_bad_ones_again(tmp_path: Path) -> None:
     store.write(Result(request, failure="no"))
     assert json.loads(store.path(request).read_text())["failure"] == "no"
     assert store.read(request) is None
+
+
+def test_a_figure_that_cannot_be_drawn_is_left_out(tmp_path: Path) -> None:
+    def nothing(_: Sequence[Result]) -> Sequence[Panel]:
+        raise Unmeasurable("the pressure does not rise")
+
+    part = Part("value", "says", "increments", Threshold(Demand(5.5, 6.5), "reason"), count)
+    figures = (Figure("none", "figure", nothing),)
+    claim = Claim("tiny", "", "words", lambda quick: [tiny("regular")], (part,), figures)
+    (tmp_path / "runs").mkdir()
+    outcome = paper.study(tmp_path, jobs=1, claims=(claim,))
+    assert [row.findings[0].verdict for row in outcome.judged] == ["holds"]
+    assert (tmp_path / "claims.md").exists()
+    assert not (tmp_path / "none.png").exists()
 
 
 def test_only_what_is_missing_is_run_again(tmp_path: Path) -> None:

@@ -91,9 +91,11 @@ def strain(result: Result) -> Floats:
     if result.request.scene != "biaxial_periodic":
         return stroke
     force = result.column("force")
-    if force[1] <= force[0]:
-        raise Unmeasurable(f"the pressure does not rise at first (seed {result.request.seed})")
-    return stroke + float(force[0] * (stroke[1] - stroke[0]) / (force[1] - force[0]))
+    rises = np.flatnonzero(force > force[0])
+    if not rises.size:
+        raise Unmeasurable(f"the pressure does not rise (seed {result.request.seed})")
+    first = rises[0]  # the next increment, unless grains rearrange in it
+    return stroke + float(force[0] * (stroke[first] - stroke[0]) / (force[first] - force[0]))
 
 
 def _reach(what: str, x: str, place: float) -> Callable[[Result], float]:

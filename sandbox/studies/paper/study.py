@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -19,7 +20,7 @@ from sandbox.studies.paper import grains as paper_grains
 from sandbox.studies.paper import hopper as paper_hopper
 from sandbox.studies.paper import intruder as paper_intruder
 from sandbox.studies.paper import quakes as paper_quakes
-from sandbox.studies.paper.claims import Claim, settle
+from sandbox.studies.paper.claims import Claim, Unmeasurable, settle
 from sandbox.studies.paper.cost import estimate
 from sandbox.studies.paper.report import Judged, as_json, as_markdown, as_table
 from sandbox.studies.paper.runs import Request, Result, Store, run_all
@@ -134,7 +135,8 @@ def _draw(
         if any(result.failure or (result.ended and not short) for result in mine):
             continue
         for figure in claim.figures:
-            draw(figure, mine, folder / f"{figure.file}.png")
+            with suppress(Unmeasurable):  # the verdicts say why
+                draw(figure, mine, folder / f"{figure.file}.png")
 
 
 def _failures(results: dict[Request, Result]) -> int:
