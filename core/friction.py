@@ -15,7 +15,7 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, twin
 from core.candidates import BODY, GRAIN
 from core.errors import InputError
 from core.frictional_contacts import Origin
@@ -50,10 +50,7 @@ class Friction:
 
     def copy(self) -> Friction:
         """An independent copy, equal to the last bit."""
-        twin = Friction.__new__(Friction)
-        for name, value in vars(self).items():
-            setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
-        return twin
+        return twin(self)
 
     @property
     def size(self) -> int:

@@ -11,7 +11,7 @@ from core.fire import CONTROL, DT_FACTOR, SHAPE_MASS, Grains, Limits, Minimizer,
 from core.friction import SPIN_MASS
 from core.frictional_contacts import FrictionalContacts, Origin, committed, relisted
 from core.jit import shared
-from core.material import deformation_stiffness
+from core.material import area_modulus, deformation_stiffness, shape_modulus
 from core.neighbors import FIT, PAIRS_FULL, RIGID_FULL, Lists, allocate, rebuild
 from core.rigid_contacts import RigidTerms, changed_sides, doubled, find_rigid_pairs
 from core.slip import TANGENTIAL_STIFFNESS
@@ -59,8 +59,7 @@ def minimizer_for(
     nu, stiffness = poisson_ratio, contact_stiffness
     rest_area = rest_radius * rest_radius
     # A grain that resists area or shape far more than a contact does is made heavier, so that dt need not shrink for it.
-    kappa = deformation_stiffness(nu, stiffness)
-    own = 2.0 * kappa * (1.0 + np.abs(nu))
+    own = 2.0 * deformation_stiffness(nu, stiffness) * (1.0 + np.abs(nu))
     lightness = 1.0 / (SHAPE_MASS * np.maximum(1.0, own / (SHAPE_MASS * stiffness)))
     rows = 6 if spins else 5
     inverse_mass, whole = np.ones((rows, count)), np.zeros((rows, count))
@@ -80,8 +79,8 @@ def minimizer_for(
         Grains(
             stiffness.copy(),
             rest_area,
-            kappa * (1.0 + nu) / rest_area,
-            2.0 * kappa * (1.0 - nu),
+            area_modulus(nu, stiffness) / rest_area,
+            2.0 * shape_modulus(nu, stiffness),
         ),
         allocate(count, 4 * count, 24, spins),
         np.arange(count),

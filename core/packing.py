@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, twin
 from core.errors import InputError
 from core.files import atomic_write
 from core.material import DEFAULT_CONTACT_STIFFNESS, check_material
@@ -201,10 +201,7 @@ class Packing:
 
     def copy(self) -> Packing:
         """An independent copy, equal to the last bit."""
-        twin = Packing.__new__(Packing)
-        for name, value in vars(self).items():
-            setattr(twin, name, value.copy() if isinstance(value, np.ndarray) else value)
-        return twin
+        return twin(self)
 
     def select(self, keep: NDArray[np.bool_]) -> Packing:
         """A new packing of the grains where ``keep`` (N,) is True; their labels stay."""

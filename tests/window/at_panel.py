@@ -1,4 +1,4 @@
-"""What a person finds in the panel: a control by its name, by mouse and by Tab."""
+"""What a person at the window finds and waits for: a control by its name, by mouse and by Tab, a grain, increments."""
 
 from __future__ import annotations
 
@@ -60,3 +60,24 @@ def go_to(desk: Desk, name: str) -> None:
 
 def sent(desk: Desk) -> list[Command]:
     return desk.session.commands
+
+
+def increment(desk: Desk) -> int:
+    frame = desk.app.stage.panes.snapshot.frame
+    assert frame is not None
+    return frame.increment
+
+
+def some_increments(desk: Desk, count: int) -> None:
+    """So many increments, then a pause."""
+    desk.key(pygame.K_a)
+    desk.until(lambda: increment(desk) >= count)
+    desk.key(pygame.K_a)
+    desk.key(pygame.K_SPACE)
+    desk.until(lambda: not desk.session.busy and not desk.session.frame().protocol)
+    desk.app.tick()
+
+
+def grain_place(desk: Desk, index: int) -> tuple[float, float]:
+    frame, camera, _ = desk.app.stage.picture.panes()[0]
+    return camera.to_screen(float(frame.x[index]), float(frame.y[index]))

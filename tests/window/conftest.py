@@ -10,6 +10,7 @@ import pytest
 from sandbox.files import autosave, preferences
 from sandbox.window.access import reader
 from sandbox.words import language
+from tests.window.desk import Desk
 
 
 @pytest.fixture(autouse=True)
@@ -41,3 +42,22 @@ def no_screen(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     language.use(language.SOURCE)
     yield
     language.use(language.SOURCE)
+
+
+@pytest.fixture
+def desk(request: pytest.FixtureRequest) -> Iterator[Desk]:
+    """A window; where the module names a size ``AT_WORK``, one of that size in which a scene runs already."""
+    size = getattr(request.module, "AT_WORK", None)
+    place = Desk() if size is None else Desk(size)
+    if size is not None:
+        place.start()
+        place.app.tick()
+    yield place
+    place.app.close()
+
+
+@pytest.fixture
+def running(desk: Desk) -> Desk:
+    """It, with a scene that runs."""
+    desk.start()
+    return desk

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pygame
 import pytest
 
@@ -15,17 +13,10 @@ from sandbox.session.commands import (
     Release,
     Retype,
 )
-from tests.window.at_parts import grain_place, sent, tab_to
+from tests.window.at_panel import go_to, grain_place, sent
 from tests.window.desk import Desk
 
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk((1024, 720))
-    place.start()
-    place.app.tick()
-    yield place
-    place.app.close()
+AT_WORK = (1024, 720)  # size of a window in which a scene runs already
 
 
 def in_world(desk: Desk, place: tuple[float, float]) -> tuple[float, float]:
@@ -34,7 +25,7 @@ def in_world(desk: Desk, place: tuple[float, float]) -> tuple[float, float]:
 
 def use_tool(desk: Desk, tool: str) -> None:
     desk.app.tick()
-    tab_to(desk, f"brush/{tool}")
+    go_to(desk, f"brush/{tool}")
     desk.key(pygame.K_RETURN)
     desk.key(pygame.K_ESCAPE)
 
@@ -61,9 +52,9 @@ def test_brush_tools_send_their_commands(desk: Desk) -> None:
     spot = grain_place(desk, 0)
     x, y = in_world(desk, spot)
     use_tool(desk, "retype")
-    tab_to(desk, "brush/kind")
+    go_to(desk, "brush/kind")
     desk.key(pygame.K_RIGHT)
-    tab_to(desk, "brush/radius")
+    go_to(desk, "brush/radius")
     desk.type("3")
     desk.key(pygame.K_RETURN)
     desk.click(spot)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pygame
 import pytest
 
@@ -16,14 +14,7 @@ from sandbox.window.panel.line_edit import Edit
 from tests.window.at_panel import box, control, go_to
 from tests.window.desk import Desk
 
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk((1024, 720))
-    place.start()
-    place.app.tick()
-    yield place
-    place.app.close()
+AT_WORK = (1024, 720)  # size of a window in which a scene runs already
 
 
 def edited(text: str, *keys: int | tuple[int, int] | str) -> Edit:

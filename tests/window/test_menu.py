@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pygame
@@ -14,19 +13,6 @@ from sandbox.words import language
 from scenes import registry
 from tests.session.edited import built
 from tests.window.desk import Desk
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk()
-    yield place
-    place.app.close()
-
-
-@pytest.fixture
-def running(desk: Desk) -> Desk:
-    desk.start()
-    return desk
 
 
 def test_menu_by_keyboard(desk: Desk) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import pygame
 import pytest
 
@@ -23,14 +21,7 @@ from scenes import registry
 from tests.window.at_panel import box, control, go_to, number, sent, track, value
 from tests.window.desk import Desk
 
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk((1024, 720))
-    place.start()
-    place.app.tick()
-    yield place
-    place.app.close()
+AT_WORK = (1024, 720)  # size of a window in which a scene runs already
 
 
 NU = "grains/regular_poisson_ratio"  # acts at once

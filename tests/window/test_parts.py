@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,17 +20,10 @@ from sandbox.session.commands import (
 from sandbox.session.frame import Contacts
 from sandbox.window.canvas.arrows import Arrows
 from sandbox.words import words
-from tests.window.at_parts import grain_place, sent, some_increments, tab_to
+from tests.window.at_panel import go_to, grain_place, sent, some_increments
 from tests.window.desk import Desk
 
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk((1024, 720))
-    place.start()
-    place.app.tick()
-    yield place
-    place.app.close()
+AT_WORK = (1024, 720)  # size of a window in which a scene runs already
 
 
 # -- looking at a grain --
@@ -93,8 +85,8 @@ def test_next_grain_in_contact_goes_along_the_strongest(desk: Desk) -> None:
         seen.append(desk.app.inspector.label)
     assert seen[:2] == [2, 1]  # the strongest, then one not seen yet
     assert set(seen) == {0, 1, 2}  # and round again
-    tab_to(desk, "general/menu")
-    tab_to(desk, f"grain/{desk.app.inspector.inspection.touches[0].label}")  # type: ignore[union-attr]
+    go_to(desk, "general/menu")
+    go_to(desk, f"grain/{desk.app.inspector.inspection.touches[0].label}")  # type: ignore[union-attr]
     before = desk.app.inspector.label
     desk.key(pygame.K_RETURN)
     assert desk.app.inspector.label != before
@@ -211,16 +203,16 @@ def test_scene_file_is_named_saved_and_opened(
     (tmp_path / "something else.toml").write_text("x = 1\n", encoding="utf-8")
     desk.app.panel.folded.discard("files")
     desk.app.tick()
-    tab_to(desk, "files/name")
+    go_to(desk, "files/name")
     desk.key(pygame.K_RETURN)
     desk.type("my trap")
     desk.key(pygame.K_RETURN)
-    tab_to(desk, "files/save")
+    go_to(desk, "files/save")
     desk.key(pygame.K_RETURN)
     (tmp_path / "my trap.scene").touch()
     desk.key(pygame.K_RETURN)  # nothing is written over
     assert saved == ["my trap.scene", "my trap-1.scene"]
-    tab_to(desk, "files/open/made before.toml")
+    go_to(desk, "files/open/made before.toml")
     assert "files/open/something else.toml" not in desk.app.stage.focus.stops()
     desk.key(pygame.K_RETURN)
     assert opened == [Path("made before.toml")]
@@ -239,15 +231,15 @@ def test_earlier_curves_are_named_hidden_and_forgotten(desk: Desk) -> None:
     field = desk.app.panel._places.named(f"curves/name/{kept.key}")
     assert field is not None
     assert isinstance(field.control, TextField)
-    tab_to(desk, field.control.name)
+    go_to(desk, field.control.name)
     desk.key(pygame.K_RETURN)
     desk.type("first try")
     desk.key(pygame.K_RETURN)
     assert kept.name == "first try"
-    tab_to(desk, f"curves/show/{kept.key}")
+    go_to(desk, f"curves/show/{kept.key}")
     desk.key(pygame.K_SPACE)
     assert not kept.visible
-    tab_to(desk, f"curves/delete/{kept.key}")
+    go_to(desk, f"curves/delete/{kept.key}")
     desk.key(pygame.K_RETURN)
     assert desk.app.stage.panes.curves.entries == ()
     desk.app.tick()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import pygame
 import pytest
@@ -17,17 +16,10 @@ from sandbox.session.commands import (
 from sandbox.session.history import Event
 from sandbox.window import timeline
 from sandbox.words import words
-from tests.window.at_parts import increment, sent, some_increments, tab_to
+from tests.window.at_panel import go_to, increment, sent, some_increments
 from tests.window.desk import Desk
 
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk((1024, 720))
-    place.start()
-    place.app.tick()
-    yield place
-    place.app.close()
+AT_WORK = (1024, 720)  # size of a window in which a scene runs already
 
 
 def test_brackets_go_back_and_on(desk: Desk) -> None:
@@ -68,7 +60,7 @@ def test_bar_is_dragged_and_only_the_latest_place_is_asked_for(desk: Desk) -> No
 def test_bar_by_keyboard(desk: Desk) -> None:
     some_increments(desk, 6)
     last = increment(desk)
-    tab_to(desk, "time/bar")
+    go_to(desk, "time/bar")
     desk.key(pygame.K_HOME)
     desk.until(lambda: increment(desk) == 0)
     desk.key(pygame.K_RIGHT)

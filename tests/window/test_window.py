@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pygame
@@ -13,19 +12,6 @@ from sandbox.session.commands import Change, Grab, Move, Protocol, Recall, Relea
 from sandbox.window import display
 from sandbox.words import words
 from tests.window.desk import Desk
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk()
-    yield place
-    place.app.close()
-
-
-@pytest.fixture
-def running(desk: Desk) -> Desk:
-    desk.start()
-    return desk
 
 
 def test_splash_is_drawn_while_building(desk: Desk) -> None:

@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pygame
@@ -23,19 +23,6 @@ from sandbox.words import language, words
 from tests.window import desk as desks
 from tests.window.desk import Desk
 from tests.window.fake_session import FakeSession
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    place = Desk()
-    yield place
-    place.app.close()
-
-
-@pytest.fixture
-def running(desk: Desk) -> Desk:
-    desk.start()
-    return desk
 
 
 def test_a_notice_goes_with_what_it_was_about(running: Desk) -> None:
