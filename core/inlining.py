@@ -12,6 +12,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from core.signatures import Remembering
+
 
 class Pipelines(NamedTuple):
     """Compiler pipelines of a kernel."""
@@ -30,6 +32,7 @@ def pipelines(noalias: bool) -> Pipelines | None:
         from numba.core import compiler as numba_compiler
         from numba.core import compiler_lock as numba_lock
         from numba.core.targetconfig import Option
+        from numba.core.typing.context import BaseContext
 
         compiler: Any = numba_compiler
         lock: Any = numba_lock.require_global_compiler_lock
@@ -46,6 +49,8 @@ def pipelines(noalias: bool) -> Pipelines | None:
             "_raise_if_finalized",
         )
         if not known or not all(hasattr(library, name) for name in used):
+            return None
+        if not hasattr(BaseContext, "resolve_function_type"):
             return None
     except (ImportError, AttributeError, KeyError):
         return None
@@ -98,6 +103,7 @@ def pipelines(noalias: bool) -> Pipelines | None:
                 state.flags.noalias = noalias
                 state.flags.no_cfunc_wrapper = True
                 state.flags.no_cpython_wrapper = not wrapped
+                state.typingctx = Remembering(state.typingctx, state.flags)
                 state.library = kind(state.targetctx.codegen(), state.func_id.func_qualname)
                 if wrapped:
                     state.library.enable_object_caching()

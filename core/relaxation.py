@@ -136,16 +136,7 @@ class Relaxation:
         while self._reason is StopReason.BUDGET and left > 0:
             if not self._listed:
                 self._relist()
-            code, used = fire.run(
-                self._minimizer,
-                self._box,
-                self._rigid,
-                self.friction_terms,
-                self._weight,
-                self._limits,
-                left,
-                self._shared,
-            )
+            code, used = self._evaluate(left)
             self.iterations += used
             left -= used
             if code == fire.LISTS_STALE:
@@ -155,6 +146,23 @@ class Relaxation:
         if self._reason is StopReason.BUDGET and self.iterations >= self.max_iterations:
             flat = collapsed(self._minimizer.state)
             self._reason = StopReason.COLLAPSED if flat else StopReason.ITERATION_LIMIT
+
+    def compile(self) -> None:
+        """Compile, or load from where it is kept, the largest of the kernels, before the first lists are made."""
+        self._evaluate(0)
+
+    def _evaluate(self, times: int) -> tuple[int, int]:
+        code, used = fire.run(
+            self._minimizer,
+            self._box,
+            self._rigid,
+            self.friction_terms,
+            self._weight,
+            self._limits,
+            times,
+            self._shared,
+        )
+        return int(code), int(used)
 
     def report(self) -> Report:
         """How it stands now."""

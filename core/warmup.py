@@ -16,10 +16,12 @@ import numpy as np
 from core import generate, kernel_cache, observables, rigid_contacts
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
+from core.passage import pass_faces
 from core.relaxation import Relaxation
 
 Tell = Callable[[float], None]
 DONE = "done-"  # a file of that name says that a part has been compiled
+_FROZEN: set[tuple[Path, str]] = set()  # parts that this process has compiled
 
 
 def _silent(share: float) -> None:
@@ -32,8 +34,7 @@ def compile_packing(*, periodic: bool, rigid: bool, progress: Tell = _silent) ->
     steps: tuple[tuple[float, Callable[[], object]], ...] = (
         (0.1, scene.place),
         (0.7, scene.relax),
-        (0.8, lambda: observables.grain_contacts(scene.packing)),
-        (1.0, lambda: observables.body_contacts(scene.packing, scene.primitives)),
+        (1.0, scene.contacts),
     )
     with compiling(kernel_cache.CORE, packing_part(periodic=periodic, rigid=rigid)):
         for done, step in steps:
@@ -45,8 +46,10 @@ def compile_packing(*, periodic: bool, rigid: bool, progress: Tell = _silent) ->
 def compile_increments(*, periodic: bool, rigid: bool, friction: bool, gravity: bool) -> None:
     """What relaxes an increment with these terms."""
     part = increments_part(periodic=periodic, rigid=rigid, friction=friction, gravity=gravity)
+    scene = _Tiny(periodic, rigid)
     with compiling(kernel_cache.CORE, part):
-        _Tiny(periodic, rigid).relax(friction=friction, gravity=gravity)
+        scene.relax(friction=friction, gravity=gravity)
+        scene.push()
 
 
 def compile_kernels(*, periodic: bool, rigid: bool, friction: bool, gravity: bool) -> None:
@@ -90,14 +93,18 @@ def compiled(folder: Path, part: str) -> bool:
 @contextmanager
 def compiling(folder: Path, part: str) -> Iterator[None]:
     """Compile a part inside, and note that it is done. The collector of garbage rests: a compiler makes much that stays."""
+    fresh = not compiled(folder, part)
     collects = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
+        if fresh and (folder, part) not in _FROZEN:
+            _FROZEN.add((folder, part))
+            gc.freeze()  # nor does it look through all that later
         if collects:
             gc.enable()
-    if not compiled(folder, part):
+    if fresh:
         with suppress(OSError):  # nothing can be kept there: nothing is
             (kernel_cache.place(folder) / (DONE + part)).touch()
 
@@ -131,8 +138,24 @@ class _Tiny:
             None if self.box is None else self.box.kernel_form(),
         )
 
+    def contacts(self) -> tuple[observables.GrainContacts, observables.RigidContacts]:
+        """All contacts."""
+        return (
+            observables.grain_contacts(self.packing),
+            observables.body_contacts(self.packing, self.primitives),
+        )
+
+    def push(self) -> None:
+        """What grains do to bodies: forces on them, and whether any has come through."""
+        bodies, rows, state = self.contacts()[1], self.primitives, self.packing.state
+        if len(rows):
+            observables.reactions(bodies, np.zeros(len(rows), dtype=np.int64), np.zeros((1, 3)))
+            which = bodies.grain, bodies.primitive, bodies.image_x, bodies.image_y
+            crossed = np.zeros((len(self.packing), len(rows)), dtype=np.bool_)
+            pass_faces(*which, state, state, rows, rows, crossed)
+
     def relax(self, *, friction: bool = False, gravity: bool = False) -> None:
-        """From an increment in which nothing moves."""
+        """One step of an increment in which nothing moves: what touched still does."""
         origin = None
         if friction:
             owner, still = np.zeros(len(self.primitives), dtype=np.int64), np.zeros((1, 3))
@@ -140,9 +163,13 @@ class _Tiny:
             origin = memory.begin(self.packing, self.primitives, owner, still, still)
         weight = (0.0, -1e-3) if gravity else None
         relaxation = Relaxation(
-            self.packing, self.primitives, origin, weight, tolerance=0.5, max_iterations=10
+            self.packing, self.primitives, origin, weight, tolerance=0.5, max_iterations=1
         )
-        relaxation.run(10)
+        if friction or gravity:
+            # Before the lists: another process may be compiling those now, to pack with. This it does not need.
+            relaxation.compile()
+        relaxation.run(1)
         relaxation.gone_through()
         if friction:
-            relaxation.slips()
+            forces = relaxation.slips()[2]
+            forces.beyond_cone(0.5, len(self.packing), *self.contacts())

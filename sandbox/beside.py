@@ -12,13 +12,13 @@ from pathlib import Path
 from core import kernel_cache
 
 ROOT = Path(__file__).parents[1]
-IDLE, HASTE = "idle", "haste"  # first word to the other process: does somebody wait for it?
+LOWEST = 19  # niceness of what nobody waits for
 
 
 @contextmanager
-def beside(wanted: Sequence[str]) -> Iterator[None]:
+def beside(wanted: Sequence[str], niceness: int = 0) -> Iterator[None]:
     """Meanwhile another process compiles these parts of the kernels; at the end it is waited for. Not on a single core."""
-    helper = start(wanted) if (os.cpu_count() or 1) > 1 else None
+    helper = start(wanted, niceness) if (os.cpu_count() or 1) > 1 else None
     try:
         yield
     except BaseException:
@@ -32,15 +32,15 @@ def beside(wanted: Sequence[str]) -> Iterator[None]:
             pass
 
 
-def start(wanted: Sequence[str], *, idle: bool = False) -> subprocess.Popen[bytes] | None:
-    """A process that compiles these parts, ``idle`` at the lowest priority; None if there are none, or nothing can be kept."""
+def start(wanted: Sequence[str], niceness: int) -> subprocess.Popen[bytes] | None:
+    """A process that compiles these parts, so much after others; None if there are none, or nothing can be kept."""
     frozen = getattr(sys, "frozen", False)  # then there is no interpreter to start
     if not wanted or frozen or not kernel_cache.usable(kernel_cache.place(kernel_cache.CORE)):
         return None
     paths = [str(ROOT), os.environ.get("PYTHONPATH", "")]
     with suppress(OSError):  # no process is to be had: it is compiled where it is needed
         return subprocess.Popen(
-            [sys.executable, "-m", "sandbox.preparation", IDLE if idle else HASTE, *wanted],
+            [sys.executable, "-m", "sandbox.preparation", str(niceness), *wanted],
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
             stdin=subprocess.PIPE,  # which ends with this process, however that ends
             stdout=subprocess.DEVNULL,

@@ -13,6 +13,7 @@ from sandbox.draw import raster
 
 FOLDER = Path(raster.__file__).resolve().parent
 DRAWING = "drawing"  # name of this part of the kernels
+NICENESS = 5  # solving takes longer to compile
 
 
 def missing() -> list[str]:
@@ -62,7 +63,7 @@ class Warmup:
 
     def _run(self) -> None:
         try:
-            with beside(missing()):
+            with beside(missing(), NICENESS):
                 pass
             compile_kernels()
         except Exception as error:  # noqa: BLE001 - raised again in the thread that asks

@@ -7,7 +7,6 @@ import sys
 import threading
 
 from sandbox import environment
-from sandbox.beside import IDLE
 from sandbox.preparation import parts
 
 
@@ -20,6 +19,6 @@ def _end_with_the_other() -> None:
 if __name__ == "__main__":
     threading.Thread(target=_end_with_the_other, daemon=True).start()
     environment.prepare_headless()
-    if sys.argv[1] == IDLE:
-        parts.be_idle()
+    if hasattr(os, "nice"):
+        os.nice(int(sys.argv[1]))
     parts.carry_out(sys.argv[2:])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 
-from sandbox.beside import start
+from sandbox.beside import LOWEST, start
 from sandbox.preparation import parts
 from scenes import registry
 
@@ -20,7 +20,7 @@ class Background:
         """Start it, the first time; if nothing is missing there is none."""
         if not self._begun:
             self._begun = True
-            self._process = start(parts.missing(parts.of_scenes(registry.names())), idle=True)
+            self._process = start(parts.missing(parts.of_scenes(registry.names())), LOWEST)
 
     def close(self) -> None:
         """End it. What it had finished is kept."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -14,8 +13,6 @@ from sandbox.draw import warmup as drawing
 from sandbox.draw.warmup import DRAWING
 from scenes import registry
 from scenes.scene import Ingredients, Scene
-
-LOWEST = 19  # priority of what nobody waits for
 
 
 def _silent(part: str, seconds: float) -> None:
@@ -73,12 +70,6 @@ def carry_out(wanted: Sequence[str], tell: Callable[[str, float], None] = _silen
         else:
             warmup.compile_part(part)
         tell(part, time.perf_counter() - began)
-
-
-def be_idle() -> None:
-    """Let everybody else go first."""
-    if hasattr(os, "nice"):
-        os.nice(LOWEST)
 
 
 def _kept(part: str) -> bool:

@@ -7,6 +7,7 @@ import sys
 
 import pytest
 
+from sandbox.beside import LOWEST
 from sandbox.preparation import background, parts
 from sandbox.preparation.background import Background
 
@@ -16,8 +17,8 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[bytes]]:
     """The processes that were started; each would sleep for a minute."""
     processes: list[subprocess.Popen[bytes]] = []
 
-    def start(wanted: list[str], *, idle: bool) -> subprocess.Popen[bytes] | None:
-        assert idle
+    def start(wanted: list[str], niceness: int) -> subprocess.Popen[bytes] | None:
+        assert niceness == LOWEST
         if not wanted:
             return None
         program = "import time; time.sleep(60.0)"

@@ -47,11 +47,12 @@ def test_a_name_says_what_is_compiled(
     assert asked == [terms, bounds]
 
 
-# Every scene as it is and with friction, as it is built, solved and drawn; says which kernels were compiled on the way.
+# Every scene as it is and with friction, as it is built, solved and drawn; says which kernels were compiled on the way, or loaded
+# from where they had been kept.
 WATCHED = """
-import json, sys
+import gc, json, sys
 from itertools import islice
-from numba.core import event
+from numba.core.registry import CPUDispatcher
 from sandbox.environment import prepare_headless
 prepare_headless()
 from core import warmup
@@ -62,13 +63,9 @@ from sandbox.session.session import Session
 from scenes import registry
 
 parts.carry_out(parts.of_scenes(registry.names()))
-compiled = []
-class Watch(event.Listener):
-    def on_start(self, happened):
-        compiled.append(f"{name}: {happened.data['dispatcher'].py_func.__qualname__}")
-    def on_end(self, happened):
-        pass
-event.register("numba:compile", Watch())
+kernels = [k for k in gc.get_objects() if isinstance(k, CPUDispatcher)]
+ready = {k: set(k.overloads) for k in kernels}
+late = set()
 FEW = {"avalanches": 60, "couette": 160, "gravity_hopper": 100, "hopper": 100, "intruder": 100}
 for name in registry.names():
     scene = registry.get(name)
@@ -84,7 +81,11 @@ for name in registry.names():
         list(islice(session.increments(400, lambda *_: None), 2))
         for view in ("kind", "pressure"):
             Renderer((640, 360), view=view).draw(session.frame())
-print(json.dumps(compiled))
+        for kernel in kernels:
+            if set(kernel.overloads) - ready[kernel]:
+                ready[kernel] = set(kernel.overloads)
+                late.add(f"{kernel.py_func.__module__}.{kernel.py_func.__qualname__}: {name}, {more}")
+print(json.dumps(sorted(late)))
 """
 
 
@@ -155,8 +156,8 @@ def test_where_nothing_can_be_kept_no_process_is_started(
     from sandbox import beside
 
     monkeypatch.setattr(kernel_cache, "usable", lambda where: False)
-    assert beside.start(["increments-rigid"]) is None
-    assert beside.start([]) is None
+    assert beside.start(["increments-rigid"], 0) is None
+    assert beside.start([], 0) is None
 
 
 def test_every_scene_has_its_parts() -> None:
@@ -175,7 +176,7 @@ def test_what_compiles_beside_ends_with_the_process_that_started_it(
     from sandbox import beside
 
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
-    process = beside.start(["increments-periodic-rigid-friction"])
+    process = beside.start(["increments-periodic-rigid-friction"], 0)
     assert process is not None
     assert process.stdin is not None
     process.stdin.close()
