@@ -26,7 +26,6 @@ from typing import Any
 
 import llvmlite
 import numba
-from filelock import FileLock
 from llvmlite import binding
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from platformdirs import user_cache_path
@@ -221,6 +220,8 @@ class _Kept:
         """
         if self._own is None:
             return
+        from filelock import FileLock  # with asyncio behind it: only where something is compiled
+
         try:
             with FileLock(Path(self._own.cache_path) / "lock", timeout=BUSY):
                 self._own.save_overload(*arguments)

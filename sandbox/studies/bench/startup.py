@@ -1,4 +1,4 @@
-"""From the start of a process to the first picture, in fresh processes: kernels compiled before, and not."""
+"""From the start of a process to the first picture, in fresh processes: kernels and sources compiled before, and not."""
 
 from __future__ import annotations
 
@@ -45,22 +45,26 @@ print(json.dumps(marks), flush=True)
 """
 
 
-def _environment(cache: str | None) -> dict[str, str]:
+def _environment(cache: str | None, bytecode: str | None = None) -> dict[str, str]:
+    """``cache`` and ``bytecode`` are folders for compiled kernels and for Python's own compiled sources in place of the usual."""
     paths = [str(REPOSITORY), os.environ.get("PYTHONPATH", "")]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
     if cache is not None:
         environment["NUMBA_CACHE_DIR"] = cache
+    if bytecode is not None:
+        environment["PYTHONPYCACHEPREFIX"] = bytecode
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)
     return environment
 
 
-def help_time(repeats: int) -> float:
-    """Wall time of ``--help``, the fastest of a few [s]."""
+def help_time(repeats: int, bytecode: str) -> float:
+    """Wall time of ``--help``, the fastest of a few [s]. ``bytecode`` is a folder that Python may keep compiled sources in."""
     best = float("inf")
     for _ in range(repeats):
         start = time.perf_counter()
         subprocess.run(
             [sys.executable, "-m", "sandbox", "--help"],
-            env=_environment(None),
+            env=_environment(None, bytecode),
             stdout=subprocess.DEVNULL,
             check=True,
             timeout=PATIENCE,
@@ -69,15 +73,17 @@ def help_time(repeats: int) -> float:
     return best
 
 
-def first_frame(scene: str, cache: str | None = None) -> dict[str, Any]:
+def first_frame(
+    scene: str, cache: str | None = None, bytecode: str | None = None
+) -> dict[str, Any]:
     """Wall time from the start of a process to its first frame [s], and what it had done by when.
 
-    ``cache`` is a folder for compiled kernels in place of the usual one.
+    ``cache`` and ``bytecode`` are folders for compiled kernels and for Python's own compiled sources in place of the usual ones.
     """
     start = time.perf_counter()
     with subprocess.Popen(
         [sys.executable, "-c", CHILD, scene],
-        env=_environment(cache),
+        env=_environment(cache, bytecode),
         stdout=subprocess.PIPE,
         text=True,
     ) as child:
@@ -95,35 +101,38 @@ def first_frame(scene: str, cache: str | None = None) -> dict[str, Any]:
 
 
 def section(*, repeats: int, cold: bool) -> Section:
-    """``--help``, the first frame with kernels in the cache, and with an empty cache if ``cold``."""
-    seconds = help_time(repeats + 1)
-    rows = [Row("--help", f"{seconds:.2f} s", *at_most(seconds, HELP, f"{HELP:g} s"))]
-    data: dict[str, Any] = {"help_s": seconds, "warm": {}, "cold": {}}
-    for scene in SCENES:
-        first_frame(scene)  # what is not in the cache yet, is now
-        runs = [first_frame(scene) for _ in range(repeats)]
-        data["warm"][scene] = runs
-        best = min(run["seconds"] for run in runs)
-        rows.append(
-            Row(
-                f"first frame of {scene}, warm",
-                f"{best:.2f} s",
-                *at_most(best, FIRST_FRAME, f"{FIRST_FRAME:g} s"),
-            )
-        )
+    """``--help``, the first frame with all compiled before, and with nothing compiled if ``cold``."""
+    with tempfile.TemporaryDirectory() as bytecode:
+        seconds = help_time(repeats + 1, bytecode)
+        rows = [Row("--help", f"{seconds:.2f} s", *at_most(seconds, HELP, f"{HELP:g} s"))]
+        data: dict[str, Any] = {"help_s": seconds, "warm": {}, "cold": {}}
+        for scene in SCENES:
+            first_frame(scene, bytecode=bytecode)  # what is not compiled yet, is now
+            runs = [first_frame(scene, bytecode=bytecode) for _ in range(repeats)]
+            data["warm"][scene] = runs
+            rows.append(warm_row(scene, min(run["seconds"] for run in runs)))
     if cold:
         scene = SCENES[0]
-        with tempfile.TemporaryDirectory() as folder:
-            run = first_frame(scene, folder)
+        with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as bytecode:
+            run = first_frame(scene, cache, bytecode)
         data["cold"][scene] = run
-        marks = run["marks"]
-        rows.append(
-            Row(
-                f"first frame of {scene}, cold",
-                f"{run['seconds']:.1f} s; packed and all kernels compiled after {marks['built']:.1f}",
-                *at_most(run["seconds"], COLD_FRAME, f"{COLD_FRAME:g} s"),
-            )
-        )
+        rows.append(cold_row(scene, run))
     else:
         rows.append(Row("first frame, cold", "not measured (--quick)"))
     return Section("startup", "Start-up, wall time", tuple(rows), data)
+
+
+def warm_row(scene: str, seconds: float) -> Row:
+    """What is shown of the quickest start of a scene."""
+    verdict = at_most(seconds, FIRST_FRAME, f"{FIRST_FRAME:g} s")
+    return Row(f"first frame of {scene}, warm", f"{seconds:.2f} s", *verdict)
+
+
+def cold_row(scene: str, run: dict[str, Any]) -> Row:
+    """What is shown of a start with nothing compiled, as ``first_frame`` gives it."""
+    built = run["marks"]["built"]
+    return Row(
+        f"first frame of {scene}, cold",
+        f"{run['seconds']:.1f} s; packed and all kernels compiled after {built:.1f}",
+        *at_most(run["seconds"], COLD_FRAME, f"{COLD_FRAME:g} s"),
+    )
