@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,6 @@ from core.relaxation import Relaxation
 
 Tell = Callable[[float], None]
 DONE = "done-"  # a file of that name says that a part has been compiled
-_FROZEN: set[tuple[Path, str]] = set()  # parts that this process has compiled
 
 
 def _silent(share: float) -> None:
@@ -93,20 +93,24 @@ def compiled(folder: Path, part: str) -> bool:
 @contextmanager
 def compiling(folder: Path, part: str) -> Iterator[None]:
     """Compile a part inside, and note that it is done. The collector of garbage rests: a compiler makes much that stays."""
-    fresh = not compiled(folder, part)
     collects = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if fresh and (folder, part) not in _FROZEN:
-            _FROZEN.add((folder, part))
-            gc.freeze()  # nor does it look through all that later
+        _set_aside()
         if collects:
             gc.enable()
-    if fresh:
+    if not compiled(folder, part):
         with suppress(OSError):  # nothing can be kept there: nothing is
             (kernel_cache.place(folder) / (DONE + part)).touch()
+
+
+@cache
+def _set_aside() -> None:
+    """Modules, compiler, what is compiled: from now on the collector does not look through them each time. Once a process: what
+    is garbage at that moment stays."""
+    gc.freeze()
 
 
 class _Tiny:

@@ -38,7 +38,7 @@ SPOKEN = (
 # And of the page that plays a run.
 SHARED = (
     *("view", "choices", "stage", "chains", "to_light", "to_dark", "increment", "events", "keys"),
-    *("letters", "noscript", "cannot_run", "silent", "play", "pause"),
+    *("letters", "noscript", "cannot_run", "silent", "unknown_seed", "play", "pause"),
 )
 # Steps of a tour that can be done on the page, where others ask for what cannot be changed there.
 STEPS = {"gravity_hopper": (0, 2), "intruder": (0, 1, 2), "single_grain": (0, 1, 2)}

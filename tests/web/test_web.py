@@ -529,6 +529,8 @@ def test_a_seed_is_chosen_by_hand_by_key_and_by_address(tried: dict[str, Any]) -
         ["2", 1],
         ["1", 0],
     ]  # as such, by address, and by one that is not there
+    unknown = language.table("en")["player"]["unknown_seed"].format(asked="77", seed=1)
+    assert seeds["told"] == ["", "", unknown, ""]  # until one is chosen
     assert seeds["chosen"] == [1, 0]  # from the list, and by the key
     assert seeds["start"] == [
         1,

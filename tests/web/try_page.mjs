@@ -297,12 +297,15 @@ async function seeds() {
   where = "hopper, seeds";
   const begun = [];
   const seed = () => page.evaluate(() => window.sandboxLive.state.seed);
+  const told = [];
+  const trouble = () => page.$eval("#trouble", (part) => (part.hidden ? "" : part.textContent));
   for (const search of ["", "?seed=2", "?seed=77"]) {
     await page.goto(address("hopper.html") + search);
     await page.waitForSelector("html[data-ready]");
     begun.push([await page.$eval("#seed", (list) => list.selectedOptions[0].textContent), await seed()]);
+    await settled();
+    told.push(await trouble());
   }
-  await settled();
   const offered = await page.$$eval("#seed option", (options) => options.map((option) => option.textContent));
   const named = await page.evaluate(() => document.querySelector("#seed").labels[0].innerText.split("\n")[0]);
   await page.keyboard.press("Space");
@@ -314,7 +317,8 @@ async function seeds() {
   const start = await rows();
   await page.keyboard.press("n");
   chosen.push(await seed());
-  return { begun, offered, named, chosen, start };
+  told.push(await trouble());
+  return { begun, offered, named, chosen, start, told };
 }
 
 async function without() {

@@ -149,6 +149,7 @@ export function showEvents() {
 
 function chooseSeed(seed: number) {
   state.seed = seed;
+  state.asked = "";
   $<HTMLSelectElement>("seed").value = String(seed);
   begin();
 }

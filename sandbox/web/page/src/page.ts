@@ -61,7 +61,10 @@ async function begin() {
   }) as unknown as PlayerRun;
   language = languageAsked(LIVE.start.auto, LIVE.languages, document.documentElement.lang);
   state.theme = themeAsked(LIVE.start.auto, LIVE.start.theme);
-  state.seed = Math.max(LIVE.seeds.indexOf(Number(inAddress.get("seed"))), 0);
+  const asked = inAddress.get("seed") ?? "";
+  const place = LIVE.seeds.indexOf(Number(asked));
+  state.seed = Math.max(place, 0);
+  if (place < 0) state.asked = asked.slice(0, 20);
   LIVE.packings.forEach((_, index) => panes.push(new Pane(LIVE, index)));
   run.panes = panes.map((pane) => pane.shown);
   the.plot = new Plot($<HTMLCanvasElement>("plot"), () => undefined);

@@ -80,14 +80,14 @@ function showLegend() {
 export function showTrouble(name: string) {
   const part = $("trouble");
   part.hidden = !name;
-  setText(part, name && word(name, { reset: word("reset") }));
+  setText(part, name && word(name, { reset: word("reset"), asked: state.asked, seed: LIVE.seeds[state.seed] }));
 }
 
 export function picture() {
   requestAnimationFrame(picture);
   pictures.count++;
   the.conductor.turn();
-  showTrouble(the.conductor.silent ? "silent" : "");
+  showTrouble(the.conductor.silent ? "silent" : state.asked && "unknown_seed");
   if (scale !== devicePixelRatio) arrange(); // on another screen
   const lags = the.conductor.waited > LAG;
   for (const pane of panes) pane.lag(lags);

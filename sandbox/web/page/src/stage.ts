@@ -3,7 +3,7 @@
 import type { Conductor } from "./conductor";
 import type { Pane } from "./panes";
 
-export const state = { theme: "dark", view: 0, chains: true, seed: 0, share: LIVE.share?.at ?? 0, script: false };
+export const state = { theme: "dark", view: 0, chains: true, seed: 0, share: LIVE.share?.at ?? 0, script: false, asked: "" }; // asked: a seed that is not there
 export const held = { by: null as number | "keys" | null }; // a pointer, or arrow keys
 export const values = new Map(LIVE.sliders.map((slider) => [slider.name, slider.value]));
 export const panes: Pane[] = [];
