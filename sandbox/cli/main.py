@@ -321,7 +321,7 @@ def _add_web(command: Command) -> None:
         "web",
         publish.web,
         "Write pages on which scenes run in any browser, with nothing to install: the same kernels, compiled for it. "
-        "Needs the extra web and Node.js; the first time it compiles, for two minutes.",
+        "Needs the extra web and Node.js; the first time it compiles and packs, for five minutes of processor.",
     )
     web.add_argument("--out", metavar="DIR", required=True, help="folder for the pages")
     what = web.add_mutually_exclusive_group()

@@ -147,7 +147,7 @@ def test_memory_survives_new_lists() -> None:
     """A skin of a hundredth takes other lists, and the answer is the same as long as none are made in the middle of an increment.
 
     Where they are, what contacts hold by then is remembered, and so is what has slid on the minimiser's way: the answer then is
-    another equilibrium, near by. Measured in steps of 0.005 R: 2e-4 R, and 2e-3 of the forces.
+    another equilibrium, near by. Measured in steps of 0.005 R: 1e-4 R, and 1e-3 of the forces.
     """
     seldom, often = sheared_on(0.001, 0.3), sheared_on(0.001, 0.003)
     assert seldom[1] == often[1] == 0
