@@ -11,13 +11,10 @@ import heapq
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.observables import GrainContacts, RigidContacts
 from core.packing import Packing
-
-Indices = NDArray[np.int64]
 
 WEAK = 0.1  # of the mean contact force: contacts below it hold nothing
 LENGTH_COST = (

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Box = tuple[float, ...]  # a periodic cell as kernels want it, see ``PeriodicBox.kernel_form``
 Thing = TypeVar("Thing")
 
 CACHE_LINE = 64  # [bytes]

@@ -9,12 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.observables import GrainContacts
-
-Indices = NDArray[np.int64]
 
 _GRAIN = 2**31
 

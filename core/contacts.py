@@ -4,7 +4,7 @@ Two grains i and j, d = x_j − x_i, r = |d|, n = d/r at angle φ, overlap Δ = 
 h is the support function, h² = s + u cos 2φ + v sin 2φ with s = p² + |q|², u = 2 p q1, v = 2 p q2 computed once a grain, and
 cos 2φ = (dx² − dy²)/r², sin 2φ = 2 dx dy/r²: no trigonometric call anywhere. Equations: MODEL.md, "Contacts".
 
-Layout ("jagged diagonals"): a FULL neighbour list, slot-major. Slot t holds the t-th neighbour of grains 0 … count[t]−1, so the
+Layout ("jagged diagonals"): a FULL neighbour list, slot-major. Slot t holds the t-th neighbour of grains 0 … width[t]−1, so the
 inner loop runs over grains, its loads and stores of grain i are contiguous, and only grain j is gathered. Every pair is computed
 twice, once from each side: that costs arithmetic, which is cheap, and saves the scatter, which is not. It also makes the sum
 over a grain's contacts independent of every other grain, hence of the number of threads.

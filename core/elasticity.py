@@ -2,8 +2,8 @@
 
 The paper's energy does not forbid a grain to vanish: squeezed from all sides by more than the largest force that its area
 can bear, it gives way altogether. A guard stops that at GUARD_AREA of the rest area, where a grain that stayed round has a
-fifth of its radius: below it the energy GUARD_STIFFNESS A0 ½ ln²(ab / (GUARD_AREA A0)) is added, which is C¹ there and has no
-bound. Everything above is as in the paper to the last bit.
+fifth of its radius: below it the energy GUARD_STIFFNESS A0 ½ ln²(ab / (GUARD_AREA A0)) is added, which is C¹ there, and below
+LEAST_AREA goes on along its tangent. Everything above is as in the paper to the last bit.
 """
 
 from __future__ import annotations

@@ -15,14 +15,12 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats, twin
+from core.arrays import Floats, Indices, twin
 from core.candidates import BODY, GRAIN
 from core.errors import InputError
 from core.frictional_contacts import Origin
 from core.packing import Packing
 from core.slip import TANGENTIAL_STIFFNESS
-
-Indices = NDArray[np.int64]
 
 # Inertia of a spin over R0², relative to x and y: as their stiffnesses are in a ring of like contacts, Σ k_t to Σ (C + k_t)/2. So
 # neither waits for the other.

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats, aligned_zeros
+from core.arrays import Box, Floats, Indices, aligned_zeros
 from core.candidates import (
     begin_marks,
     count_listed,
@@ -31,9 +31,6 @@ from core.marks import count_beyond, lay_out, measure, slips, tangential_forces
 from core.observables import GrainContacts, RigidContacts, push_bodies
 from core.rigid_contacts import RigidTerms
 from core.slip import FrictionTerms, prepare_friction
-
-Indices = NDArray[np.int64]
-Box = tuple[float, ...]
 
 BEYOND = 1.05  # times the Coulomb cap: a contact that pulls harder counts as beyond the cone
 

@@ -134,6 +134,8 @@ def pack(
         raise InputError(f"the packing fraction must lie between 0.01 and {MOST_DENSE}")
     if count is not None and count < 0:
         raise InputError("the number of grains must be 0 or more")
+    if count == 0 and (target_pressure is not None or (outline is None and box is None)):
+        raise InputError("a packing without grains has neither a size of its own nor a pressure")
     counted = count is not None
     random = np.random.default_rng(seed)
     world = world or RigidWorld()

@@ -2,7 +2,7 @@
 
 A hand that goes wherever it is driven, a testing machine, has a strength without bound. Any other one is as strong as it is:
 where a whole increment would take more than that, the increment is done again with a shorter way, until the force is right or
-there is no way left. So the force never exceeds the strength by more than ``SLACK``, however stiff the packing.
+there is no way left. So a hand never brings the force above its strength by more than ``SLACK``, however stiff the packing.
 """
 
 from __future__ import annotations

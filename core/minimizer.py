@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from core.arrays import Floats
+from core.arrays import Box, Floats
 from core.fire import CONTROL, DT_FACTOR, SHAPE_MASS, Grains, Limits, Minimizer, reorder
 from core.friction import SPIN_MASS
 from core.frictional_contacts import FrictionalContacts, Origin, committed, relisted
@@ -18,7 +18,6 @@ from core.slip import TANGENTIAL_STIFFNESS
 from core.steering import ALPHA_START, DT_START
 
 SKIN_SPAN = 4.0  # of the smallest radius, where that is less than the largest: else small grains list far too many neighbours
-Box = tuple[float, ...]
 
 
 @shared

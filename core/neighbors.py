@@ -2,8 +2,8 @@
 
 A rebuild sorts the grains into cells, finds all pairs closer than their extents plus the skin, and lays them out in slots (see
 ``contacts``): each with both of its grains, or with one, which is half a list. That layout wants grains in descending order of
-their number of neighbours, so a rebuild also says in which order the grains must stand; ``relax`` keeps its arrays in that order,
-and ``Packing`` never knows.
+their number of neighbours, so a rebuild also says in which order the grains must stand; ``minimizer.relist`` keeps its arrays
+in that order, and ``Packing`` never knows.
 
 A list stays valid until some grain has moved, or grown, by half the skin in all.
 """
@@ -29,8 +29,8 @@ class Lists(NamedTuple):
     half: bool  # is each pair listed with one of its grains only?
     width: NDArray[np.int64]  # (K,) grains that have more than t neighbours listed
     offset: NDArray[np.int64]  # (K,) where slot t begins in ``neighbor``
-    neighbor: NDArray[np.uint32]  # (2 P + padding,)
-    stiffness: NDArray[np.float64]  # (2 P + padding,) C_ij [k]
+    neighbor: NDArray[np.uint32]  # (2 P + padding,), or half that where ``half``
+    stiffness: NDArray[np.float64]  # as many, C_ij [k]
     order: NDArray[np.int64]  # (N,) the grain that must stand at each place
     cell_order: NDArray[np.int64]  # (N,)
     cell_start: NDArray[np.int64]  # (cells + 1,)

@@ -5,17 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core import neighbors, rigid_contacts
-from core.arrays import Floats
+from core.arrays import Box, Floats, Indices
 from core.contacts import grain_overlap
 from core.endless import endless
 from core.jit import kernel, shared
 from core.packing import Packing
-
-Indices = NDArray[np.int64]
-Box = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -212,8 +208,11 @@ def stress(
     """Stress tensor σ_ij = (1/area) Σ_c F_i d_j (2, 2) [k], compression positive.
 
     Haver et al., doi:10.1073/pnas.2317915121, appendix "Numerical biaxial setup". Contacts with bodies count with the branch from
-    the grain's centre to the body; ``packing`` is then needed. σ_xy = σ_yx only in equilibrium: their difference tests that.
+    the grain's centre to the body; ``packing`` is then needed (else ValueError). σ_xy = σ_yx only in equilibrium: their
+    difference tests that.
     """
+    if rigid is not None and packing is None:
+        raise ValueError("the branches of contacts with bodies need the packing")
     tensor = np.array(
         [
             [-np.sum(contacts.fx * contacts.dx), -np.sum(contacts.fx * contacts.dy)],

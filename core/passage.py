@@ -9,11 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.jit import kernel, shared
 from core.rigid_contacts import EDGE
-
-Indices = NDArray[np.int64]
 
 
 @shared

@@ -38,7 +38,9 @@ Touching = tuple[observables.GrainContacts, observables.RigidContacts]  # who to
 class Increment:
     """What one increment came to."""
 
-    moved: dict[str, Point]  # displacement of each body that was asked to move [R]
+    moved: dict[
+        str, Point
+    ]  # displacement of each body that was asked to move [R]; of one that FAILED, as it was tried
     pulled: dict[str, Point]  # and the way in which the hand pulls it, a unit vector, or 0
     stopped: dict[str, str]  # and why it stopped short: "force limit", "end of travel" or "wall"
     share: float  # of a step that the strength of the hand was enough for
@@ -244,11 +246,15 @@ class Quasistatic:
                 return self._stand_still(spent)
             report = replace(report, iterations=spent)
         if not good:
-            # Back to the last good state, bodies too: what is shown and saved is always finite and whole.
+            # Back to the last good state, bodies too: what is shown and saved is always finite and whole. The residual, and the
+            # energy where nothing was before, are those of what was tried.
             self._take_back()
             contacts = self.contacts()
             unbalanced[:] = 0.0
-            reactions = self._measure(contacts[1], None)
+            if self.friction is None:  # else they are as they were, with what friction had in them
+                reactions = self._measure(contacts[1], None)
+            if self.latest is not None:
+                report = replace(report, energy=self.latest.report.energy)
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._tries.moved

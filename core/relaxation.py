@@ -47,7 +47,10 @@ _REASONS = {
 
 @dataclass(frozen=True)
 class Report:
-    """How a relaxation stands: energy [k R²], residual (max |force| over the mean contact force), force evaluations so far."""
+    """How a relaxation stands: energy [k R²], residual (max |force| over the mean contact force), force evaluations so far.
+
+    ``mean_contact_force`` [k R] is what the residual is relative to: of the latest look at it, and the force floor at least.
+    """
 
     reason: StopReason
     energy: float

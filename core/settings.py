@@ -9,8 +9,8 @@ from core.errors import InputError
 from core.relaxation import DEFAULT_SKIN, DEFAULT_TOLERANCE
 
 DEFAULT_STEP = 0.05  # [R]
-DEFAULT_FORCE_FLOOR = (
-    1e-2  # [k R] of the mean contact force; below it a residual is no longer relative to that
+FORCE_FLOOR = (
+    1e-2  # [k] of the mean contact force; below it a residual is no longer relative to that
 )
 MACHINE = math.inf  # [k R] the strength of a testing machine, which goes wherever it is driven
 LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a body past a grain
@@ -20,12 +20,13 @@ LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a bod
 class Settings:
     """How far a hand moves a body in one increment, ``step`` [R], how hard, ``hand_strength`` [k R], and how carefully to relax.
 
-    ``force_floor`` [k] and ``skin`` are multiplied by the largest rest radius: what is done is the same in all units of length.
+    ``force_floor`` [k] and ``skin`` are multiplied by the largest rest radius (the skin by four smallest ones at most): what is
+    done is the same in all units of length.
     """
 
     step: float = DEFAULT_STEP
     tolerance: float = DEFAULT_TOLERANCE
-    force_floor: float = DEFAULT_FORCE_FLOOR
+    force_floor: float = FORCE_FLOOR
     skin: float = DEFAULT_SKIN
     max_iterations: int = 8_000
     threads: int = 1

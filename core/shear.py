@@ -24,15 +24,15 @@ def shear_modulus(strain: Floats, stress: Floats) -> float:
     """G [k], from small cycles: slope of the stress (M,) [k] against the strain (M,), averaged over both directions of motion.
 
     A straight line is fitted through the points of each direction by itself, so that a hysteresis does not tilt it. Raises
-    InputError unless the strain went both ways.
+    InputError unless there are two strains in each direction.
     """
     strain, stress = np.asarray(strain, dtype=np.float64), np.asarray(stress, dtype=np.float64)
     step = np.diff(strain)
     slopes = []
     for direction in (1.0, -1.0):
         at = np.flatnonzero(step * direction > 0.0) + 1
-        if len(at) < 2:
-            raise InputError("a shear modulus needs strain in both directions")
+        if not len(at) or not np.ptp(strain[at]) > 0.0:
+            raise InputError("a shear modulus needs two strains in each direction")
         x = strain[at] - strain[at].mean()
         slopes.append(float(np.sum(x * stress[at]) / np.sum(x * x)))
     return 0.5 * sum(slopes)
@@ -46,13 +46,14 @@ def yield_stress(strain: Floats, stress: Floats, start: float) -> float:
     """
     strain, stress = np.asarray(strain, dtype=np.float64), np.asarray(stress, dtype=np.float64)
     direction = np.sign(np.diff(strain))
-    since, counted = 0.0, []
+    since, counted, before = 0.0, [], 0.0
     for k in range(1, len(strain)):
         way = direction[k - 1]
         if way == 0.0:
             continue
-        if k > 1 and way == -direction[k - 2]:
+        if way == -before:
             since = 0.0
+        before = way
         since += abs(strain[k] - strain[k - 1])
         if since > start:
             counted.append(way * stress[k])

@@ -150,12 +150,6 @@ def shear_stress(packing: Packing, increment: Increment) -> float:
     return -0.5 * float(tensor[0, 1] + tensor[1, 0])
 
 
-def pressure(packing: Packing, increment: Increment) -> float:
-    """Pressure in the cell [k]."""
-    assert packing.box is not None
-    return observables.pressure(observables.stress(increment.grain_contacts, packing.box.area))
-
-
 def taking_part(packing: Packing, before: Increment, now: Increment) -> NDArray[np.float64]:
     """How much each grain takes part in what happened between two increments, (N,) [k² R²]."""
     label = packing.label

@@ -36,7 +36,7 @@ class BiaxialPeriodic(Scene):
         "A box without walls: what leaves on one side comes in on the other. "
         "Drag its corner to shrink it; auxetic grains give way, regular ones push back."
     )
-    default_steps = 40
+    default_steps = 39
     handle_names = ("box",)
     parameters = (
         Parameter("grains", 500, "", 50, 5000, "number of grains, exactly"),

@@ -16,7 +16,8 @@ from core.errors import InputError
 from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
-from scenes.checks import Check, Track
+from scenes.checks import Check, Track, on_bodies
+from scenes.drives import depth_after, steps_to
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
 from scenes.registry import register
@@ -113,15 +114,11 @@ class BiaxialPress(Scene):
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         lid = setup.world["lid"]
         end = way_down(_side(setup), float(settings["compression"]))
-        depth = (increment + 1) * setup.solver.step
-        if depth > end + 1e-9:
-            return None
-        return {"lid": (lid.home[0], lid.home[1] - depth)}
+        depth = depth_after(increment, setup.solver.step, end)
+        return None if depth is None else {"lid": (lid.home[0], lid.home[1] - depth)}
 
     def steps(self, settings: Values) -> int:
-        return math.floor(
-            way_down(_square(settings), float(settings["compression"])) / step(settings) + 1e-6
-        )
+        return steps_to(way_down(_square(settings), float(settings["compression"])), step(settings))
 
     def region(self, setup: Setup) -> list[Point]:
         """The square between floor and lid."""
@@ -183,10 +180,8 @@ def _lid(half: float) -> RigidBody:
 
 def _balance(setup: Setup) -> Check:
     """What the lid presses, the floor bears: every grain may be off by the tolerance times the mean contact force."""
-    primitives, owner = setup.world.primitives()
     pairs = observables.grain_contacts(setup.packing)
-    contacts = observables.body_contacts(setup.packing, primitives)
-    reactions = observables.reactions(contacts, owner, setup.world.placement())
+    contacts, reactions = on_bodies(setup)
     name = "the floor bears what the lid presses"
     if setup.friction is not None:
         return Check(name, None, "with friction its faces bear tangential forces too")

@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from core import observables
+from core.arrays import Floats
 from core.generate import inside
 from core.packing import Packing
 from core.rigid import Point, RigidWorld
+from core.system import System
 from scenes.outlet import Outlet
 from scenes.text import counted
 
@@ -19,8 +21,8 @@ from scenes.text import counted
 class Track:
     """What the checks of a scene look at: the curve so far. Arrays (M,), one entry an increment."""
 
-    stroke: np.ndarray  # [R]
-    force: np.ndarray  # that resists the drive [k R]
+    stroke: np.ndarray  # [R], or what the scene plots
+    force: np.ndarray  # that resists the drive [k R], or what the scene plots
     grains_out: np.ndarray
     residual: np.ndarray
     converged: np.ndarray
@@ -34,6 +36,13 @@ class Check:
     name: str
     holds: bool | None
     measured: str
+
+
+def on_bodies(system: System) -> tuple[observables.RigidContacts, Floats]:
+    """Contacts of grains and bodies as they stand, and what they do to each body, (B, 3) [k R, k R²], without friction."""
+    primitives, owner = system.world.primitives()
+    contacts = observables.body_contacts(system.packing, primitives)
+    return contacts, observables.reactions(contacts, owner, system.world.placement())
 
 
 def below_height(outline: Sequence[Point], y: float) -> list[Point]:

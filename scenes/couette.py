@@ -11,7 +11,8 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
 from core.shear import plate_stress
-from scenes.checks import Check, Track
+from scenes.checks import Check, Track, on_bodies
+from scenes.drives import there_and_back
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
@@ -48,7 +49,7 @@ class Couette(Scene):
         "Two plates with teeth, and the grains between them. "
         "Drag the upper plate: regular grains resist more, unless the pressure is the same."
     )
-    default_steps = 432
+    default_steps = 428
     handle_names = ("upper plate",)
     parameters = (
         Parameter(
@@ -248,10 +249,7 @@ def _strain(settings: Values, increments: int) -> float:
     protocol = int(settings["protocol"])
     if protocol == STEADY:
         return increments * step(settings) / _cell(settings)[2]
-    phase = increments / _quarter(settings) % 4.0
-    return AMPLITUDE[protocol] * (
-        phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
-    )
+    return AMPLITUDE[protocol] * there_and_back(increments / _quarter(settings))
 
 
 def _stresses_agree(setup: Setup) -> Check:
@@ -259,9 +257,7 @@ def _stresses_agree(setup: Setup) -> Check:
     name = "normal stress from the plates' force and from the contacts agree within 10 %"
     if setup.friction is not None:
         return Check(name, None, "contacts are measured without their friction")
-    primitives, owner = setup.world.primitives()
-    contacts = observables.body_contacts(setup.packing, primitives)
-    forces = observables.reactions(contacts, owner, setup.world.placement())
+    contacts, forces = on_bodies(setup)
     assert setup.packing.box is not None
     width = setup.packing.box.width
     _, plate = plate_stress(forces[setup.world.index("upper plate")], width)

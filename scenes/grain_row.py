@@ -6,17 +6,16 @@ no force runs sideways.
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
 
-from core import observables
 from core.generate import Progress, Recipe
 from core.packing import Packing
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld
-from scenes.checks import Check, Track, below_height
+from scenes.checks import Check, Track, below_height, on_bodies
+from scenes.drives import depth_after, steps_to
 from scenes.grains import FRICTION, MATERIAL, friction
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -109,13 +108,11 @@ class GrainRow(Scene):
 
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         piston = setup.world["piston"]
-        depth = (increment + 1) * setup.solver.step
-        if depth > 2.0 * float(settings["compression"]) + 1e-9:
-            return None
-        return {"piston": (piston.home[0], piston.home[1] - depth)}
+        depth = depth_after(increment, setup.solver.step, 2.0 * float(settings["compression"]))
+        return None if depth is None else {"piston": (piston.home[0], piston.home[1] - depth)}
 
     def steps(self, settings: Values) -> int:
-        return math.floor(2.0 * float(settings["compression"]) / float(settings["step"]) + 1e-6)
+        return steps_to(2.0 * float(settings["compression"]), float(settings["step"]))
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """How much room there is between the grains, and what part of the piston's force goes sideways."""
@@ -194,9 +191,7 @@ def _box(half_width: float) -> RigidWorld:
 
 def _wall_forces(setup: Setup) -> tuple[float, float]:
     """Outward force of the grains on the left and the right wall [k R]."""
-    primitives, owner = setup.world.primitives()
-    contacts = observables.body_contacts(setup.packing, primitives)
-    reactions = observables.reactions(contacts, owner, setup.world.placement())
+    _, reactions = on_bodies(setup)
     left, right = (float(reactions[setup.world.index(name), 0]) for name in ENDS)
     return -left, right
 

@@ -18,6 +18,7 @@ from core.packing import Packing
 from core.quasistatic import Increment, Quasistatic
 from core.rigid import Point, RigidBody, RigidWorld, wall
 from scenes.checks import Check, Track
+from scenes.drives import there_and_back
 from scenes.falls import who_took_part
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.hopper import WALL, Shape, standing_arch
@@ -168,9 +169,8 @@ class GravityHopper(Scene):
         if k < 0 or amplitude == 0.0:
             return {"funnel": funnel.home}
         quarter = max(1, math.ceil(amplitude / setup.solver.step))
-        phase = (k + 1) / quarter % 4.0
-        sway = phase if phase <= 1.0 else 2.0 - phase if phase <= 3.0 else phase - 4.0
-        return {"funnel": (funnel.home[0] + amplitude * sway, funnel.home[1])}
+        sway = amplitude * there_and_back((k + 1) / quarter)
+        return {"funnel": (funnel.home[0] + sway, funnel.home[1])}
 
     def adjust(self, setup: Setup, settings: Values, changed: frozenset[str]) -> None:
         super().adjust(setup, settings, changed)

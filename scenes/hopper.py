@@ -13,6 +13,7 @@ from core.generate import Progress, pack
 from core.quasistatic import Increment
 from core.rigid import Point, RigidBody, RigidWorld, offset_path, wall
 from scenes.checks import below_height
+from scenes.drives import depth_after, steps_to
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.outlet import Outlet
@@ -82,7 +83,7 @@ class Hopper(Scene):
 
     def steps(self, settings: Values) -> int:
         end = min(float(settings["stroke"]), Shape(settings).channel - 1.0)
-        return max(1, math.floor(end / step(settings) + 1e-6))
+        return steps_to(end, step(settings))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None
@@ -134,10 +135,8 @@ class Hopper(Scene):
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         piston = setup.world["piston"]
         end = min(float(settings["stroke"]), piston.travel[1])
-        depth = (increment + 1) * setup.solver.step
-        if depth > end + 1e-9:
-            return None
-        return {"piston": (piston.home[0], piston.home[1] - depth)}
+        depth = depth_after(increment, setup.solver.step, end)
+        return None if depth is None else {"piston": (piston.home[0], piston.home[1] - depth)}
 
     def region(self, setup: Setup) -> list[Point]:
         return below_height(setup.outline, setup.world["piston"].position[1])

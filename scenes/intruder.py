@@ -7,6 +7,7 @@ import math
 from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.drives import depth_after, steps_to
 from scenes.falls import sudden_fall, who_took_part
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, whole_above
@@ -64,7 +65,7 @@ class Intruder(Scene):
     def steps(self, settings: Values) -> int:
         radius = float(settings["intruder_radius"])
         room = self._box(settings)[0] - 2.0 * (radius + MARGIN)
-        return max(1, math.floor(min(float(settings["stroke"]), room) / step(settings) + 1e-6))
+        return steps_to(min(float(settings["stroke"]), room), step(settings))
 
     @staticmethod
     def _box(settings: Values) -> tuple[float, float]:
@@ -137,8 +138,6 @@ class Intruder(Scene):
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         body = setup.world["intruder"]
         right = setup.outline[1][0] - float(settings["intruder_radius"]) - MARGIN
-        end = min(body.home[0] + float(settings["stroke"]), right)
-        ahead = body.home[0] + (increment + 1) * setup.solver.step
-        if ahead > end + 1e-9:
-            return None
-        return {"intruder": (ahead, body.home[1])}
+        end = min(float(settings["stroke"]), right - body.home[0])
+        ahead = depth_after(increment, setup.solver.step, end)
+        return None if ahead is None else {"intruder": (body.home[0] + ahead, body.home[1])}

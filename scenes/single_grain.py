@@ -20,6 +20,7 @@ from core.packing import Packing
 from core.rigid import Point, RigidBody, RigidWorld
 from core.settings import LONGEST_STEP, Settings
 from scenes.checks import Check, Track, below_height
+from scenes.drives import depth_after, steps_to
 from scenes.parameter import Parameter
 from scenes.registry import register
 from scenes.relaxing import MAX_ITERATIONS, TOLERANCE
@@ -138,15 +139,11 @@ class SingleGrain(Scene):
 
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         plate = setup.world["plate"]
-        end = 2.0 * float(settings["radius"]) * float(settings["compression"])
-        depth = (increment + 1) * setup.solver.step
-        if depth > end + 1e-9:
-            return None
-        return {"plate": (plate.home[0], plate.home[1] - depth)}
+        depth = depth_after(increment, setup.solver.step, _way(settings))
+        return None if depth is None else {"plate": (plate.home[0], plate.home[1] - depth)}
 
     def steps(self, settings: Values) -> int:
-        end = 2.0 * float(settings["radius"]) * float(settings["compression"])
-        return math.floor(end / float(settings["step"]) + 1e-6)
+        return steps_to(_way(settings), float(settings["step"]))
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """Each grain's height and width, and for two plates their ratio."""
@@ -230,6 +227,11 @@ def _plates(grains: Packing, four: bool) -> tuple[RigidWorld, float]:
                 RigidBody("wall", "wall", position=(0.0, radius), polygons=slab(thick, top))
             )
     return RigidWorld(bodies), half_width
+
+
+def _way(settings: Values) -> float:
+    """How far the plate goes [R]."""
+    return 2.0 * float(settings["radius"]) * float(settings["compression"])
 
 
 def _strains(packing: Packing) -> NDArray[np.float64]:

@@ -7,12 +7,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.frictional_contacts import FrictionForces
 from core.quasistatic import Increment
 from core.rigid import RigidWorld
-
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ class Row:
     """One finished increment. Forces are those of the grains on the handle."""
 
     increment: int
-    stroke: float  # [R]
+    stroke: float  # [R], or what the scene plots instead
     fx: float  # [k R]
     fy: float  # [k R]
     grains_out: int
@@ -24,9 +24,7 @@ class Row:
     residual: float  # relative
     iterations: int
     stop_reason: str
-    resisting: (
-        float  # force against the drive [k R]; follows from fx, fy and the direction of motion
-    )
+    resisting: float  # force against the drive [k R], from fx, fy and the direction of motion; or what the scene plots instead
     # How far off the force on the handle is, estimated [k R]: usually no further than the first, nine times of ten the second.
     # See ``scenes.accuracy``.
     usual_error: float = math.nan

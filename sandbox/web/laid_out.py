@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.errors import InputError
 from core.friction import Friction
 from core.packing import Packing, PeriodicBox
@@ -22,7 +22,6 @@ from sandbox.web.increment.systems import PLACES, TURN
 from scenes.gravity_hopper import REST, TREMBLE
 from scenes.scene import Scene, Setup, Values
 
-Indices = NDArray[np.int64]
 Blocks = tuple[Indices, Floats]
 ROOM = 8  # contacts a grain, and a few more: far above what any packing has
 CURVES = {

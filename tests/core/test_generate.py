@@ -217,6 +217,8 @@ def test_inside_concave() -> None:
         ({"count": 40, "target_pressure": math.nan}, "pressure"),
         ({"count": -4}, "number of grains"),
         ({"count": 4}, "box is too small"),
+        ({"count": 0}, "without grains"),
+        ({"count": 0, "outline": SQUARE, "target_pressure": 0.1}, "without grains"),
     ],
 )
 def test_impossible_requests(request_: dict[str, object], message: str) -> None:

@@ -212,3 +212,12 @@ def test_pressure_in_grains_is_work_per_growth(seed: int) -> None:
     work = (energy(1.0 + STEP) - energy(1.0 - STEP)) / (2.0 * STEP)
     assert total > 0.0
     assert total == pytest.approx(0.5 * work, rel=1e-4)
+
+
+def test_branches_to_bodies_need_the_packing() -> None:
+    packing = examples.random_grains(5, 6.0, 1)
+    contacts = observables.grain_contacts(packing)
+    bodies = observables.body_contacts(packing, np.zeros((0, 8)))
+    assert np.all(np.isfinite(observables.stress(contacts, 30.0, bodies, packing)))
+    with pytest.raises(ValueError, match="need the packing"):
+        observables.stress(contacts, 30.0, bodies)

@@ -137,6 +137,12 @@ def test_select_keeps_labels() -> None:
     assert part.select(part.label == 4).label.tolist() == [4]
 
 
+def test_a_circle_is_not_tilted_whatever_the_signs_of_its_zeros() -> None:
+    packing = Packing(np.arange(4.0), np.zeros(4))
+    packing.state[3], packing.state[4] = [0.0, 0.0, -0.0, -0.0], [0.0, -0.0, 0.0, -0.0]
+    assert np.array_equal(packing.angle, np.zeros(4))
+
+
 @given(
     st.lists(st.tuples(st.floats(0.1, 2.0), st.floats(0.1, 2.0), st.floats(-9.0, 9.0)), max_size=5)
 )

@@ -37,7 +37,7 @@ def test_modulus_of_a_line_and_of_a_loop() -> None:
 
 
 def test_modulus_needs_both_directions() -> None:
-    with pytest.raises(InputError, match="both directions"):
+    with pytest.raises(InputError, match="each direction"):
         shear_modulus(np.linspace(0.0, 1.0, 20), np.linspace(0.0, 1.0, 20))
 
 
@@ -50,6 +50,19 @@ def test_yield_stress_of_steady_flow_and_of_cycles() -> None:
     assert yield_stress(strain, 0.25 * way, 0.5) == pytest.approx(0.25)
     with pytest.raises(InputError, match="sheared"):
         yield_stress(strain, stress=strain, start=10.0)
+
+
+def test_a_pause_at_a_turning_point_changes_nothing() -> None:
+    strain, stress = np.array([0.0, 1.0, 0.5, 0.0]), np.array([0.0, 0.3, -1.0, -0.2])
+    paused, longer = np.insert(strain, 2, [1.0, 1.0]), np.insert(stress, 2, [0.3, 0.3])
+    assert yield_stress(strain, stress, 0.6) == pytest.approx((0.3 + 0.2) / 2)
+    assert yield_stress(paused, longer, 0.6) == yield_stress(strain, stress, 0.6)
+
+
+def test_a_modulus_needs_two_strains_in_each_direction() -> None:
+    strain = np.array([0.0, 1.0, 0.0, 1.0, 0.0])
+    with pytest.raises(InputError, match="two strains"):
+        shear_modulus(strain, 0.3 * strain)
 
 
 def test_dilatancy_is_the_rise_away_from_the_middle() -> None:

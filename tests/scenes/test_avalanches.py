@@ -9,7 +9,8 @@ from core import observables
 from core.avalanches import force_changes, participation
 from sandbox.session.commands import Grab, Move, Protocol
 from sandbox.session.session import Session
-from scenes.avalanches import LEAST_DROP, pressure, shear_stress, taking_part
+from scenes.avalanches import LEAST_DROP, shear_stress, taking_part
+from scenes.biaxial_periodic import pressure
 
 PRESSURE = 0.06
 

@@ -14,10 +14,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core import observables
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.jit import kernel
 from core.observables import GrainContacts, RigidContacts, body_contacts, grain_contacts
 from core.packing import Packing
@@ -26,8 +25,6 @@ from core.relaxation import Relaxation
 from core.rigid_contacts import DISC
 from sandbox.studies.accuracy.peers import minimize
 from sandbox.studies.accuracy.walk import Look, Walker
-
-Indices = NDArray[np.int64]
 
 BISECTIONS = 50
 SKIN = 0.4  # [R] two grains that come nearer than that on the way to balance would be missed

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.jit import kernel
 from core.observables import push_bodies, touching_bodies, touching_grains
 
-Indices = NDArray[np.int64]
 # Rows of ``Touching.pair`` and of ``Touching.body``.
 FX, FY, FORCE, OVERLAP, DX, DY = range(6)
 AT_X, AT_Y, IMAGE_X, IMAGE_Y = range(4, 8)

@@ -202,6 +202,8 @@ def follow(kept, system, made):
         return x * place[AXIS_X] + y * place[AXIS_Y]
     if made.pulled[driven, 0] != 0.0 or made.pulled[driven, 1] != 0.0:
         row[ROW.direction_x], row[ROW.direction_y] = made.pulled[driven]
+    if failed(made.reason):
+        return row[ROW.stroke]
     dx, dy = made.moved[driven]
     return row[ROW.stroke] + np.sqrt(dx * dx + dy * dy)
 
@@ -259,7 +261,8 @@ def advance(kept):
     row[ROW.hand_y] = -along * ay
     row[ROW.residual] = made.residual
     row[ROW.scale] = made.scale
-    row[ROW.energy] = made.energy
+    if at_start or not failed(made.reason):
+        row[ROW.energy] = made.energy
     row[ROW.share] = made.share
     squares = 0.0
     for i in range(made.unbalanced.shape[1]):

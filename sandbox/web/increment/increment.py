@@ -236,7 +236,8 @@ def increment(system, rubs):
             remember(memory, relaxed)
         past.last[:] = grains.state - start
         past.moved[:] = moved
-        past.reactions[:] = reactions(bodies, contacts, pulls)
+        if good or rubs is None:  # else they are as they were, with what friction had in them
+            past.reactions[:] = reactions(bodies, contacts, pulls)
         break
     if still:
         grains.state[:] = start

@@ -9,9 +9,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from core.arrays import Floats
+from core.arrays import Floats, Indices
 from core.jit import kernel
 from sandbox.web.increment.cell import CELL, box_of
 from sandbox.web.increment.systems import (
@@ -23,8 +22,6 @@ from sandbox.web.increment.systems import (
     Settings,
     System,
 )
-
-Indices = NDArray[np.int64]
 
 
 class Sizes(NamedTuple):

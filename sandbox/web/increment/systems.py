@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from core.arrays import Floats
-
-Indices = NDArray[np.int64]
+from core.arrays import Floats, Indices
 
 # Columns of ``Bodies.places``.
 X, Y, TURN, HOME_X, HOME_Y, AXIS_X, AXIS_Y, LEAST, MOST, RADIUS = range(10)
