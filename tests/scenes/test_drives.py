@@ -13,7 +13,7 @@ from scenes.drives import HAIR, depth_after, steps_to, there_and_back
 
 @given(st.floats(1e-6, 100.0), st.floats(1e-3, 0.25))
 def test_as_many_steps_as_are_said_lead_to_the_end(end: float, step: float) -> None:
-    depths = []
+    depths: list[float] = []
     while (depth := depth_after(len(depths), step, end)) is not None:
         depths.append(depth)
     assert len(depths) in (steps_to(end, step), steps_to(end, step) - 1)  # as rounding has it
