@@ -134,8 +134,10 @@ def pack(
         raise InputError(f"the packing fraction must lie between 0.01 and {MOST_DENSE}")
     if count is not None and count < 0:
         raise InputError("the number of grains must be 0 or more")
-    if count == 0 and (target_pressure is not None or (outline is None and box is None)):
-        raise InputError("a packing without grains has neither a size of its own nor a pressure")
+    if count == 0 and outline is None and box is None:
+        raise InputError(
+            "a packing without grains has no size of its own: give an outline or a box"
+        )
     counted = count is not None
     random = np.random.default_rng(seed)
     world = world or RigidWorld()
@@ -146,6 +148,10 @@ def pack(
         box = PeriodicBox(side, side)
     elif count is None:
         count = round(packing_fraction * open_area(outline, world, box) / recipe.mean_area())
+    if count == 0 and target_pressure is not None:
+        raise InputError(
+            "a packing without grains has no pressure: give more grains, or no pressure"
+        )
     radius, nu = recipe.grains(count, random)
     if outline is None and box is not None and np.isfinite(box.height) and not world.bodies:
         area = box.area

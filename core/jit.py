@@ -15,6 +15,7 @@ Four decisions live here and nowhere else:
 
 from __future__ import annotations
 
+import logging
 import platform
 from collections.abc import Callable
 from contextlib import suppress
@@ -22,10 +23,14 @@ from typing import Any, TypeVar
 
 import numba
 from llvmlite import binding
+from numba.core.registry import cpu_target
 from numba.extending import register_jitable
 
 from core import inlining
+from core.errors import InputError
 from core.kernel_cache import keep
+
+log = logging.getLogger(__name__)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -60,6 +65,12 @@ LEVEL_FEATURES = [
 ]
 
 
+if getattr(numba.config, "DISABLE_JIT", False):
+    raise InputError(
+        "the solver is nothing but compiled code: unset the variable NUMBA_DISABLE_JIT"
+    )
+
+
 def _choose_processor() -> None:
     """Compile for a level of processors, if this one has it, else for this one; unless Numba's variables ask for something else.
 
@@ -69,6 +80,11 @@ def _choose_processor() -> None:
     asked = config.CPU_NAME is not None or config.CPU_FEATURES is not None
     if asked or platform.machine().lower() not in {"x86_64", "amd64"}:
         return
+    if "_toplevel_target_context" in vars(cpu_target):
+        log.warning(
+            "Numba has compiled something before, for this very processor: last bits may differ from those of other starts; "
+            "import core first"
+        )
     with suppress(RuntimeError):  # LLVM does not know this processor
         here = binding.get_host_cpu_features()
         features = here.flatten()

@@ -166,7 +166,7 @@ class Packing:
 
     @property
     def angle(self) -> Floats:
-        """Angle θ of the longer axis in (−π/2, π/2] [rad], (N,); 0 for a circle."""
+        """Angle θ of the longer axis in [−π/2, π/2] [rad], (N,); 0 for a circle."""
         q1, q2 = self.state[3:] + 0.0  # of −0, too, the angle is 0
         angle: Floats = 0.5 * np.arctan2(q2, q1)
         return angle

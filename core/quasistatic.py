@@ -246,15 +246,13 @@ class Quasistatic:
                 return self._stand_still(spent)
             report = replace(report, iterations=spent)
         if not good:
-            # Back to the last good state, bodies too: what is shown and saved is always finite and whole. The residual, and the
-            # energy where nothing was before, are those of what was tried.
+            # Back to the last good state, bodies too: what is shown and saved is always finite and whole. Energy and residual in
+            # the report are those of what was tried.
             self._take_back()
             contacts = self.contacts()
             unbalanced[:] = 0.0
             if self.friction is None:  # else they are as they were, with what friction had in them
                 reactions = self._measure(contacts[1], None)
-            if self.latest is not None:
-                report = replace(report, energy=self.latest.report.energy)
         self._last = self.packing.state - self._start
         self._own_motion = self.packing.state[:2] - self._carried if good else 0.0 * self._carried
         self._last_moved = self._tries.moved

@@ -16,6 +16,7 @@ import numpy as np
 
 from core import generate, kernel_cache, observables, rigid_contacts
 from core.friction import Friction
+from core.own_process import OWN
 from core.packing import Packing, PeriodicBox
 from core.passage import pass_faces
 from core.relaxation import Relaxation
@@ -98,7 +99,8 @@ def compiling(folder: Path, part: str) -> Iterator[None]:
     try:
         yield
     finally:
-        _set_aside()
+        if OWN.is_set():
+            _set_aside()
         if collects:
             gc.enable()
     if not compiled(folder, part):
@@ -109,7 +111,8 @@ def compiling(folder: Path, part: str) -> Iterator[None]:
 @cache
 def _set_aside() -> None:
     """Modules, compiler, what is compiled: from now on the collector does not look through them each time. Once a process: what
-    is garbage at that moment stays."""
+    is there at that moment stays.
+    """
     gc.freeze()
 
 

@@ -10,6 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from core import kernel_cache
+from sandbox.environment import cores
 
 ROOT = Path(__file__).parents[1]
 LOWEST = 19  # niceness of what nobody waits for
@@ -18,7 +19,7 @@ LOWEST = 19  # niceness of what nobody waits for
 @contextmanager
 def beside(wanted: Sequence[str], niceness: int = 0) -> Iterator[None]:
     """Meanwhile another process compiles these parts of the kernels; at the end it is waited for. Not on a single core."""
-    helper = start(wanted, niceness) if (os.cpu_count() or 1) > 1 else None
+    helper = start(wanted, niceness) if cores() > 1 else None
     try:
         yield
     except BaseException:

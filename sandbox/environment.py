@@ -1,4 +1,4 @@
-"""What the program needs from the machine: one pygame, and for a window a screen."""
+"""What the program needs from the machine: one pygame, processors, and for a window a screen."""
 
 from __future__ import annotations
 
@@ -33,6 +33,13 @@ def require_pygame_ce() -> None:
         raise InputError(f"pygame-ce is not installed: {reinstall}") from error
     if not getattr(pygame, "IS_CE", False):
         raise InputError(f"pygame-ce is not installed, but another pygame: {reinstall}")
+
+
+def cores() -> int:
+    """How many processors this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def prepare_headless() -> None:

@@ -14,6 +14,7 @@ from core.packing import Packing, PeriodicBox
 from core.quasistatic import Increment
 from core.rigid import Point, RigidWorld
 from scenes.checks import Check, Track
+from scenes.drives import depth_after
 from scenes.grains import MATERIAL, PAPER, SIZES, recipe
 from scenes.parameter import Parameter
 from scenes.registry import register
@@ -110,10 +111,8 @@ class Avalanches(Scene):
 
     def drive(self, setup: Setup, settings: Values, increment: int) -> dict[str, Point] | None:
         side = setup.outline[1][0]
-        shift = (increment + 1) * setup.solver.step
-        if shift > float(settings["strain"]) * side + 1e-9:
-            return None
-        return {"box": (0.5 * side + shift, side)}
+        shift = depth_after(increment, setup.solver.step, float(settings["strain"]) * side)
+        return None if shift is None else {"box": (0.5 * side + shift, side)}
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         if latest.before is None or latest.curve.shape[1] < 2:

@@ -255,7 +255,7 @@ class Scene(ABC):
         """Where the scripted drive goes on when live parameters change; unless a subclass knows better, it goes by steps."""
         if "step" not in before:
             return increment
-        return math.ceil(increment * step(before) / step(after) - 1e-9)
+        return math.floor(increment * step(before) / step(after) + 1e-9)
 
     def remarks(self, setup: Setup, settings: Values, latest: Latest) -> Remarks:
         """What is to be said about an increment. Nothing, unless a subclass knows better."""

@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from core.errors import InputError, nearest
+from core.own_process import OWN
 from sandbox import __version__
 from sandbox.cli import arguments, listing, publish, streams
 from sandbox.cli import bench as benching
@@ -45,6 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def program() -> int:
     """``main`` for a process that ends with it."""
+    OWN.set()
     with stop_like_ctrl_c():
         code = main()
         hear_no_more()

@@ -6,6 +6,7 @@ import os
 import sys
 import threading
 
+from core.own_process import OWN
 from sandbox import environment
 from sandbox.preparation import parts
 
@@ -17,6 +18,7 @@ def _end_with_the_other() -> None:
 
 
 if __name__ == "__main__":
+    OWN.set()
     threading.Thread(target=_end_with_the_other, daemon=True).start()
     environment.prepare_headless()
     if hasattr(os, "nice"):

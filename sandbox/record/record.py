@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -15,6 +14,7 @@ from core.errors import InputError
 from core.files import atomic_write
 from sandbox.bars import bar_options
 from sandbox.beside import beside
+from sandbox.environment import cores
 from sandbox.files.pipes import with_reader
 from sandbox.files.table import PLAIN, GrowingTable, Spelling
 from sandbox.interrupts import deferred
@@ -82,7 +82,12 @@ def record(sessions: Sequence[Session], steps: int, output: Output) -> Outcome:
                 session.submit(Protocol(True))
     except KeyboardInterrupt:
         return NOTHING
-    return run(sessions, in_step(sessions), steps, output)
+    outcome = run(sessions, in_step(sessions), steps, output)
+    if not outcome.increments and not outcome.interrupted:
+        raise InputError(
+            "there is nothing to drive, so no increment was made and nothing is written"
+        )
+    return outcome
 
 
 def repeat(log: Log, output: Output | None) -> tuple[Session, Outcome]:
@@ -114,7 +119,7 @@ def in_step(sessions: Sequence[Session]) -> Iterator[bool]:
     Each packing relaxes every increment to the end before any begins the next; one that is done waits. So the result does
     not depend on how fast the machine is.
     """
-    with ThreadPoolExecutor(min(len(sessions), os.cpu_count() or 1)) as pool:
+    with ThreadPoolExecutor(min(len(sessions), cores())) as pool:
         works = [session.slices(SLICE) for session in sessions]
         finished = True
         while finished:

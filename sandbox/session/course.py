@@ -84,8 +84,9 @@ class Course:
         if body.axis is not None:
             self.stroke = float(np.dot(np.array(body.position) - body.home, body.axis))
             return
-        if increment.report.reason not in FAILED:  # else it is back where it was
-            self.stroke += math.hypot(*increment.moved.get(drive, (0.0, 0.0)))
+        if increment.report.reason in FAILED:  # it is back where it was
+            return
+        self.stroke += math.hypot(*increment.moved.get(drive, (0.0, 0.0)))
         pull = increment.pulled.get(drive, (0.0, 0.0))
         if pull != (0.0, 0.0):
             self.direction = pull

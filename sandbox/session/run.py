@@ -210,7 +210,10 @@ class Run:
         # Nobody has measured what a person has made.
         known = UNKNOWN if self.course.edited else self.scene.accuracy.estimate(self.packing_kind)
         number, farthest = len(self.history), self.engine.farthest_move()
-        self.history.append(self.course.read_off(self.setup, increment, number, farthest, known))
+        row = self.course.read_off(self.setup, increment, number, farthest, known)
+        if number and increment.report.reason in FAILED:  # the grains are as they were
+            row = replace(row, energy=self.history[-1].energy)
+        self.history.append(row)
 
     @property
     def _still(self) -> bool:

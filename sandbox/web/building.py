@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -10,6 +9,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from sandbox.ensemble.batch import Batch, Workers, carry_out_all
+from sandbox.environment import cores
 from sandbox.files.folder import write_text
 from sandbox.web.laid_out import Blocks, laid_out
 from sandbox.web.menu import FILE, menu, way_back
@@ -34,7 +34,7 @@ SCENES: dict[str, Mapping[str, Value]] = {
 ORDER = ("regular", "mixed", "auxetic")
 ALIKE = ("single_grain",)  # nothing in it is random
 SINGLE = 400_000  # bytes of one page at most
-JOBS = min(os.cpu_count() or 1, 8)  # processes that pack
+JOBS = min(cores(), 8)  # processes that pack
 
 Asked = tuple[str, int]  # a scene and a seed
 

@@ -218,7 +218,11 @@ def test_inside_concave() -> None:
         ({"count": -4}, "number of grains"),
         ({"count": 4}, "box is too small"),
         ({"count": 0}, "without grains"),
-        ({"count": 0, "outline": SQUARE, "target_pressure": 0.1}, "without grains"),
+        ({"count": 0, "outline": SQUARE, "target_pressure": 0.1}, "no pressure"),
+        (
+            {"box": PeriodicBox(5.0, 5.0), "packing_fraction": 0.01, "target_pressure": 0.1},
+            "no pressure",
+        ),
     ],
 )
 def test_impossible_requests(request_: dict[str, object], message: str) -> None:

@@ -121,3 +121,30 @@ def test_features_that_somebody_asked_for_are_left_alone() -> None:
         check=True,
     )
     assert done.stdout.strip() == "+sse2"
+
+
+def imports(*before: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """``core`` imported in a process of its own, after some lines."""
+    return subprocess.run(
+        [sys.executable, "-c", "\n".join([*before, "from core import jit"])],
+        cwd=REPOSITORY,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+@pytest.mark.skipif(
+    platform.machine().lower() not in {"x86_64", "amd64"}, reason="no level of processors to choose"
+)
+def test_what_was_compiled_before_for_another_target_is_told() -> None:
+    before = ("import numba", "@numba.njit", "def one(): return 1", "one()")
+    assert "import core first" in imports(*before).stderr
+    assert imports("import numba").stderr == ""
+
+
+def test_without_a_compiler_there_is_one_sentence() -> None:
+    done = imports(NUMBA_DISABLE_JIT="1")
+    assert done.returncode != 0
+    assert "InputError: the solver is nothing but compiled code: unset" in done.stderr

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sandbox.session.commands import Protocol
+from sandbox.session.commands import Change, Protocol
 from sandbox.session.session import Session
 from scenes.drives import HAIR, depth_after, steps_to, there_and_back
 
@@ -28,6 +30,7 @@ def test_as_many_steps_as_are_said_lead_to_the_end(end: float, step: float) -> N
         ("single_grain", {"compression": 1e-4}, 2e-4),
         ("grain_row", {"compression": 1e-3}, 2e-3),
         ("biaxial_press", {"grains": 10, "compression": 0.01, "step": 0.06}, None),
+        ("avalanches", {"grains": 60, "strain": 0.01, "step": 0.15}, None),
     ],
 )
 def test_a_drive_shorter_than_a_step_is_one_shorter_step(
@@ -42,10 +45,42 @@ def test_a_drive_shorter_than_a_step_is_one_shorter_step(
     assert (
         len(run.history) == run.scene.steps(run.settings) + 1 == 2
     )  # as it is at the start, and one more
-    moved = run.last.moved[run.setup.handles[0].body]
-    assert 0.0 < -moved[1] < run.setup.solver.step
+    body, box = run.setup.handles[0].body, run.setup.packing.box
+    moved = math.hypot(*run.last.moved[body]) if box is None else box.shift
+    assert 0.0 < moved < run.setup.solver.step
     if way is not None:
-        assert -moved[1] == pytest.approx(way)
+        assert moved == pytest.approx(way)
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "longer"),
+    [
+        ("single_grain", {"compression": 0.1}, 0.15),
+        ("grain_row", {"compression": 0.02}, 0.03),
+        ("biaxial_press", {"grains": 20, "compression": 0.05, "step": 0.01}, 0.15),
+        ("hopper", {"grains": 100, "stroke": 0.5, "step": 0.01}, 0.15),
+    ],
+)
+def test_a_longer_step_on_the_way_leads_as_far(
+    scene: str, settings: dict[str, float], longer: float
+) -> None:
+    session = Session(scene, "regular", 1, settings)
+    session.build()
+    session.submit(Protocol(True))
+    while len(session.history) < 3:
+        session.advance()
+    session.submit(Change("step", longer))
+    for _ in session.increments(100, lambda *_: None):
+        pass
+    whole = Session(scene, "regular", 1, {**settings, "step": longer})
+    whole.build()
+    whole.submit(Protocol(True))
+    for _ in whole.increments(100, lambda *_: None):
+        pass
+    there, end = (abs(each.run.way or 0.0) for each in (session, whole))
+    assert there == pytest.approx(end, abs=1e-9)
+    most = session.run.setup.solver.step + 1e-9
+    assert all(math.hypot(*each) <= most for each in session.run.last.moved.values())
 
 
 def test_there_and_back_is_a_triangular_wave() -> None:

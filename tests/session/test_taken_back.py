@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.quasistatic import Quasistatic
-from sandbox.session.commands import Grab, Move, Protocol
+from sandbox.session.commands import Grab, Move, Protocol, Recall
 from sandbox.session.session import Session
 
 SAME = ("stroke", "fx", "fy", "resisting", "energy", "beyond_cone", "on_solids")
@@ -65,6 +65,53 @@ def test_what_an_increment_that_is_taken_back_shows_is_what_was_before(
     go(session, 1)
     assert session.history[-1].stop_reason == "converged"
     assert session.history[-1].stroke > row.stroke
+
+
+def failing(session: Session) -> float:
+    """Energy in the row of an increment that fails [k R²]."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Quasistatic, "_sunk", lambda *_: True)
+        pull(session)
+        go(session, 1)
+    assert session.history[-1].stop_reason == "sunk"
+    return session.history[-1].energy
+
+
+def test_so_it_is_after_going_back_and_after_a_file() -> None:
+    session = Session(
+        "hopper", "mixed", 1, {"grains": 100, "friction": 0.3, "hand_strength": "machine"}
+    )
+    session.build()
+    session.submit(Protocol(True))
+    go(session, 12)
+    energy = [row.energy for row in session.history.rows()]
+    assert energy[5] != energy[12]
+    again = Session.from_file(session.made().to_file("x"))
+    again.build()
+    assert failing(again) == failing(session) == energy[12]
+    session.submit(Recall(5))
+    session.settle()
+    assert failing(session) == energy[5]
+
+
+def test_a_pull_another_way_that_fails_shows_what_was_felt() -> None:
+    session = Session(
+        "intruder",
+        "regular",
+        1,
+        {"grains": 100, "intruder_radius": 2.0, "hand_strength": "machine"},
+    )
+    session.build()
+    session.submit(Protocol(True))
+    go(session, 8)
+    row, body = session.history[-1], session.run.setup.world["intruder"]
+    session.submit(Grab("intruder"))
+    session.submit(Move("intruder", body.position[0], body.position[1] + 1.0))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Quasistatic, "_sunk", lambda *_: True)
+        go(session, 1)
+    assert session.history[-1].stop_reason == "sunk"
+    assert session.history[-1].resisting == pytest.approx(row.resisting, rel=1e-12)
 
 
 def test_contacts_beyond_the_cone_are_counted_while_nothing_moves(

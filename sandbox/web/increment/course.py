@@ -200,10 +200,10 @@ def follow(kept, system, made):
     if place[RADIUS] == 0.0:
         x, y = place[X] - place[HOME_X], place[Y] - place[HOME_Y]
         return x * place[AXIS_X] + y * place[AXIS_Y]
-    if made.pulled[driven, 0] != 0.0 or made.pulled[driven, 1] != 0.0:
-        row[ROW.direction_x], row[ROW.direction_y] = made.pulled[driven]
     if failed(made.reason):
         return row[ROW.stroke]
+    if made.pulled[driven, 0] != 0.0 or made.pulled[driven, 1] != 0.0:
+        row[ROW.direction_x], row[ROW.direction_y] = made.pulled[driven]
     dx, dy = made.moved[driven]
     return row[ROW.stroke] + np.sqrt(dx * dx + dy * dy)
 

@@ -18,12 +18,12 @@ from core.errors import InputError
 from sandbox.draw.pages.explore_page import MapCell
 from sandbox.ensemble.batch import Batch, carry_out_all
 from sandbox.ensemble.pool import Pool
+from sandbox.environment import cores
 from sandbox.session.frame import Frame
 from sandbox.sweep.outcome import Found, carried_out
 from sandbox.sweep.request import Job, Request
 from sandbox.sweep.summary import Cell, cells
 from sandbox.sweep.tables import Tables
-from sandbox.window.solvers.conductor import cores
 
 NICENESS = 10
 EVERY = 0.25  # [s] between two looks at all cells

@@ -10,7 +10,6 @@ The conductor also says which turns are seen, and how far ahead of them the solv
 from __future__ import annotations
 
 import math
-import os
 import threading
 import time
 from collections import deque
@@ -18,6 +17,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import Literal, get_args
 
+from sandbox.environment import cores
 from sandbox.session.commands import Change, Command, Edit, Move, Recall, Redo, Reset, Undo
 from sandbox.session.mark import Mark
 from sandbox.window.solvers.ahead import Pace, Ready, may_wait
@@ -39,13 +39,6 @@ AT_ONCE = (Reset, Change, Recall, Undo, Redo, *get_args(Edit))
 def begins_anew(command: Command) -> bool:
     """Does what came before matter no more? Without knowing the scene: after any reset or change."""
     return isinstance(command, (Reset, Change))
-
-
-def cores() -> int:
-    """How many this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def unseen(ready: Ready) -> None:
