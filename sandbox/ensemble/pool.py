@@ -14,6 +14,7 @@ from multiprocessing import connection
 from multiprocessing.synchronize import Event
 from typing import Any
 
+from core.own_process import OWN
 from sandbox.interrupts import deferred
 
 
@@ -63,6 +64,7 @@ def _begin(stop: Event, parent: int) -> None:
     """In a new process of the pool."""
     global _stop
     _stop = stop
+    OWN.set()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     process = multiprocessing.parent_process()
     if process is not None and process.pid == parent:

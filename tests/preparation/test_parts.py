@@ -181,3 +181,25 @@ def test_what_compiles_beside_ends_with_the_process_that_started_it(
     assert process.stdin is not None
     process.stdin.close()
     assert process.wait(60.0) == 1
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_what_others_hold_in_a_process_of_theirs_can_be_freed(own: bool) -> None:
+    """The collector leaves alone what is there after the first start, but only where nobody else works."""
+    program = f"""
+import gc, weakref
+class Circle: pass
+circle = Circle()
+circle.own = circle
+gone = weakref.ref(circle)
+from core import warmup
+from core.own_process import OWN
+OWN.set() if {own} else None
+warmup.compile_packing(periodic=False, rigid=False)
+warmup.compile_packing(periodic=False, rigid=True)
+kept = gc.get_freeze_count()
+del circle
+gc.collect()
+print(kept > 0, gone() is None)
+"""
+    assert run("-c", program).stdout.split() == [str(own), str(not own)]

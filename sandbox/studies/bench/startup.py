@@ -23,7 +23,9 @@ PATIENCE = 600.0
 CHILD = """
 import json, sys, time
 began = time.perf_counter()
+from core.own_process import OWN
 from sandbox.environment import prepare_headless
+OWN.set()
 prepare_headless()
 from sandbox.session.session import Session
 from sandbox.draw import warmup
