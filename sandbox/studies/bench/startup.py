@@ -115,8 +115,10 @@ def section(*, repeats: int, cold: bool) -> Section:
             rows.append(warm_row(scene, min(run["seconds"] for run in runs)))
     if cold:
         scene = SCENES[0]
-        with tempfile.TemporaryDirectory() as cache, tempfile.TemporaryDirectory() as bytecode:
-            run = first_frame(scene, cache, bytecode)
+        with (
+            tempfile.TemporaryDirectory() as cache
+        ):  # what is installed beside the program has its bytecode
+            run = first_frame(scene, cache)
         data["cold"][scene] = run
         rows.append(cold_row(scene, run))
     else:
