@@ -72,3 +72,13 @@ def test_comparing_needs_a_scene() -> None:
     options = cli.parse(["play", "--compare", "regular,auxetic"])
     with pytest.raises(InputError, match="needs a scene"):
         options.run(options)
+
+
+def test_a_run_in_which_nothing_is_driven_is_a_mistake_and_no_empty_film(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session = Session("single_grain", "regular")
+    monkeypatch.setattr(type(session.scene), "drive", lambda *_: None)
+    with pytest.raises(InputError, match="nothing to drive"):
+        record([session], 3, Output(None, tmp_path / "one.csv"))
+    assert list(tmp_path.iterdir()) == []
