@@ -134,16 +134,14 @@ def pack(
         raise InputError(f"the packing fraction must lie between 0.01 and {MOST_DENSE}")
     if count is not None and count < 0:
         raise InputError("the number of grains must be 0 or more")
-    if count == 0 and outline is None and box is None:
-        raise InputError(
-            "a packing without grains has no size of its own: give an outline or a box"
-        )
     counted = count is not None
     random = np.random.default_rng(seed)
     world = world or RigidWorld()
     if outline is None and box is None:
         if count is None:
             raise InputError("give an outline, a periodic box, or a number of grains")
+        if count == 0:
+            raise InputError("a packing without grains has no size: give an outline or a box")
         side = math.sqrt(count * recipe.mean_area() / packing_fraction)
         box = PeriodicBox(side, side)
     elif count is None:

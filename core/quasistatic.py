@@ -38,9 +38,8 @@ Touching = tuple[observables.GrainContacts, observables.RigidContacts]  # who to
 class Increment:
     """What one increment came to."""
 
-    moved: dict[
-        str, Point
-    ]  # displacement of each body that was asked to move [R]; of one that FAILED, as it was tried
+    # Displacement of each body that was asked to move [R]; of an increment that FAILED, as it was tried.
+    moved: dict[str, Point]
     pulled: dict[str, Point]  # and the way in which the hand pulls it, a unit vector, or 0
     stopped: dict[str, str]  # and why it stopped short: "force limit", "end of travel" or "wall"
     share: float  # of a step that the strength of the hand was enough for

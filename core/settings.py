@@ -9,9 +9,7 @@ from core.errors import InputError
 from core.relaxation import DEFAULT_SKIN, DEFAULT_TOLERANCE
 
 DEFAULT_STEP = 0.05  # [R]
-FORCE_FLOOR = (
-    1e-2  # [k] of the mean contact force; below it a residual is no longer relative to that
-)
+FORCE_FLOOR = 1e-2  # [k] least mean contact force that a residual is relative to
 MACHINE = math.inf  # [k R] the strength of a testing machine, which goes wherever it is driven
 LONGEST_STEP = 0.25  # [R] of the smallest grain; a longer one could carry a body past a grain
 

@@ -7,6 +7,7 @@ import math
 from core.errors import InputError
 from core.generate import Progress, pack
 from core.rigid import Point, RigidBody, RigidWorld, wall
+from scenes.drives import steps_to
 from scenes.grains import FRICTION, MATERIAL, PAPER, SIZES, friction, recipe
 from scenes.parameter import Parameter, round_down, round_up
 from scenes.registry import register
@@ -66,7 +67,7 @@ class Workshop(Scene):
             )
 
     def steps(self, settings: Values) -> int:
-        return max(2, math.floor(2.0 * _way(settings) / step(settings) + 1e-6))
+        return max(2, steps_to(2.0 * _way(settings), step(settings)))
 
     def build(
         self, settings: Values, packing: str, seed: int, progress: Progress | None = None

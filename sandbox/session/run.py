@@ -168,11 +168,10 @@ class Run:
         before = None if self.course.touched else self.last
         unfinished = increment.report.reason is StopReason.ITERATION_LIMIT
         self.course.touched = max(self.course.touched - 1, 0) if unfinished else 0
-        if (
-            increment.friction is None and self.setup.friction is not None
-        ):  # nothing has moved, or it was taken back
-            as_before = self.last.friction, self.last.beyond_cone
-            increment = replace(increment, friction=as_before[0], beyond_cone=as_before[1])
+        if increment.friction is None and self.setup.friction is not None:
+            # Nothing has moved, or it was taken back: forces are as before.
+            last = self.last
+            increment = replace(increment, friction=last.friction, beyond_cone=last.beyond_cone)
         self.last = increment
         earlier = None if before is None else Earlier(before, self.setup.packing.label)
         self.course.tell_what_stopped(self.setup, increment)

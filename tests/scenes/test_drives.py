@@ -13,6 +13,20 @@ from sandbox.session.session import Session
 from scenes.drives import HAIR, depth_after, steps_to, there_and_back
 
 
+def driven(scene: str, settings: dict[str, float]) -> Session:
+    """A scene whose script is about to begin."""
+    session = Session(scene, "regular", 1, settings)
+    session.build()
+    session.submit(Protocol(True))
+    return session
+
+
+def to_the_end(session: Session) -> None:
+    """Until nothing wants another increment."""
+    for _ in session.increments(1000):
+        pass
+
+
 @given(st.floats(1e-6, 100.0), st.floats(1e-3, 0.25))
 def test_as_many_steps_as_are_said_lead_to_the_end(end: float, step: float) -> None:
     depths: list[float] = []
@@ -36,15 +50,10 @@ def test_as_many_steps_as_are_said_lead_to_the_end(end: float, step: float) -> N
 def test_a_drive_shorter_than_a_step_is_one_shorter_step(
     scene: str, settings: dict[str, float], way: float | None
 ) -> None:
-    session = Session(scene, "regular", 1, settings)
-    session.build()
-    session.submit(Protocol(True))
-    for _ in session.increments(10, lambda *_: None):
-        pass
+    session = driven(scene, settings)
+    to_the_end(session)
     run = session.run
-    assert (
-        len(run.history) == run.scene.steps(run.settings) + 1 == 2
-    )  # as it is at the start, and one more
+    assert len(run.history) - 1 == run.scene.steps(run.settings) == 1
     body, box = run.setup.handles[0].body, run.setup.packing.box
     moved = math.hypot(*run.last.moved[body]) if box is None else box.shift
     assert 0.0 < moved < run.setup.solver.step
@@ -64,19 +73,12 @@ def test_a_drive_shorter_than_a_step_is_one_shorter_step(
 def test_a_longer_step_on_the_way_leads_as_far(
     scene: str, settings: dict[str, float], longer: float
 ) -> None:
-    session = Session(scene, "regular", 1, settings)
-    session.build()
-    session.submit(Protocol(True))
+    session, whole = driven(scene, settings), driven(scene, {**settings, "step": longer})
     while len(session.history) < 3:
         session.advance()
     session.submit(Change("step", longer))
-    for _ in session.increments(100, lambda *_: None):
-        pass
-    whole = Session(scene, "regular", 1, {**settings, "step": longer})
-    whole.build()
-    whole.submit(Protocol(True))
-    for _ in whole.increments(100, lambda *_: None):
-        pass
+    to_the_end(session)
+    to_the_end(whole)
     there, end = (abs(each.run.way or 0.0) for each in (session, whole))
     assert there == pytest.approx(end, abs=1e-9)
     most = session.run.setup.solver.step + 1e-9

@@ -115,9 +115,8 @@ def section(*, repeats: int, cold: bool) -> Section:
             rows.append(warm_row(scene, min(run["seconds"] for run in runs)))
     if cold:
         scene = SCENES[0]
-        with (
-            tempfile.TemporaryDirectory() as cache
-        ):  # what is installed beside the program has its bytecode
+        with tempfile.TemporaryDirectory() as cache:
+            # The usual bytecode: what is installed beside the program has its own.
             run = first_frame(scene, cache)
         data["cold"][scene] = run
         rows.append(cold_row(scene, run))
