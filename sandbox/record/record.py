@@ -137,10 +137,10 @@ def run(
 ) -> Outcome:
     """Draw on ``work``, which says when an increment was finished, until its end or ``steps`` times.
 
-    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th; the
-    table grows on the disk. Ctrl-C is heard between two pieces of work, so that frames and rows always go together. Where one
-    of the two cannot be written any more, or the work fails, the run ends, and a table holds what there was; a film that can
-    still be written is finished. Raises what had happened.
+    The sessions, several of them side by side, are built already. A frame is written after each increment, or each n-th and
+    the last; the table grows on the disk. Ctrl-C is heard between two pieces of work, so that frames and rows always go
+    together. Where one of the two cannot be written any more, or the work fails, the run ends, and a table holds what there
+    was; a film that can still be written is finished. Raises what had happened.
     """
     from tqdm import tqdm
 
@@ -152,6 +152,13 @@ def run(
     draw = _drawer(output) if output and film else None
     trajectory = _trajectory(output.trajectory) if output and output.trajectory else None
     writer = VideoWriter(film, output.size, output.fps, output.gif) if output and film else None
+
+    def show() -> None:
+        if writer and draw:
+            writer.write(draw([session.frame() for session in sessions]))
+        if trajectory:
+            trajectory.write(sessions[0])
+
     increments = 0
     interrupted = False
     failed: InputError | None = None  # of the table
@@ -172,12 +179,10 @@ def run(
                         break
                     if finished:
                         increments += 1
-                        if writer and draw and output and increments % output.every == 0:
-                            writer.write(draw([session.frame() for session in sessions]))
+                        if output and increments % output.every == 0:
+                            show()
                         if tape:
                             tape.add([session.frame() for session in sessions])
-                        if trajectory and output and increments % output.every == 0:
-                            trajectory.write(sessions[0])
                         bar.update()
                 if table and increments:
                     try:
@@ -185,6 +190,9 @@ def run(
                     except InputError as error:
                         failed = error
                         break
+            if output and increments % output.every:
+                with deferred():
+                    show()
     except KeyboardInterrupt:
         interrupted = True
     finally:

@@ -82,3 +82,27 @@ def test_a_run_in_which_nothing_is_driven_is_a_mistake_and_no_empty_film(
     with pytest.raises(InputError, match="nothing to drive"):
         record([session], 3, Output(None, tmp_path / "one.csv"))
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("every", "frames"), [(1, 5), (2, 3), (5, 1), (1000, 1)])
+def test_the_last_increment_is_shown_whatever_is_left_out(
+    every: int, frames: int, tmp_path: Path
+) -> None:
+    def made(name: str, every: int) -> Path:
+        session = Session("single_grain", "regular")
+        xyz = tmp_path / f"{name}.xyz"
+        output = Output(tmp_path / name, None, (640, 360), every=every, trajectory=xyz)
+        outcome = record([session], 5, output)
+        assert outcome.increments == 5
+        if name.endswith(".gif"):
+            assert outcome.frames == frames
+        return tmp_path / name
+
+    made("film.gif", every)
+    assert len(imageio.v2.mimread(tmp_path / "film.gif")) == frames
+    assert (tmp_path / "film.gif.xyz").exists()
+    assert made("few.png", every).read_bytes() == made("all.png", 1).read_bytes()
+    few, all_of_them = (
+        (tmp_path / f"{name}.png.xyz").read_text().splitlines()[-3:] for name in ("few", "all")
+    )
+    assert few == all_of_them
